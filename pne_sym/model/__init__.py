@@ -1,0 +1,1 @@
+"""Frozen data: joints, links, legs, platform, manipulator; their reader."""

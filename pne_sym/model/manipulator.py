@@ -1,0 +1,173 @@
+"""A manipulator as frozen data: the full form of a specification.
+
+A manipulator is a platform carried by legs in parallel.  A leg is a chain of
+joints with one freedom each (universal, cylindrical and spherical joints are
+sequences of them with massless links between), closed by a platform joint.
+
+All quantities are in SI units and radians.  Frames: the *base* frame is fixed;
+a leg's base frame is given by `Leg.base_frame`; each link carries a frame at
+its joint, parallel to the leg's base frame when all displacements are zero.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+Vector3 = tuple[float, float, float]
+Matrix3 = tuple[Vector3, Vector3, Vector3]
+
+ZERO3: Vector3 = (0.0, 0.0, 0.0)
+IDENTITY3: Matrix3 = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+ZERO33: Matrix3 = (ZERO3, ZERO3, ZERO3)
+
+
+class Space(enum.StrEnum):
+    """The task space: which components of the platform's motion are coordinates."""
+
+    POINT = "point"
+    PLANAR = "planar"
+    SPATIAL = "spatial"
+    TRANSLATIONAL = "translational"
+    SPHERICAL = "spherical"
+
+
+class JointKind(enum.StrEnum):
+    """Kind of a joint with one freedom."""
+
+    REVOLUTE = "R"
+    PRISMATIC = "P"
+    HELICAL = "H"
+
+
+class PlatformJointKind(enum.StrEnum):
+    """Kind of the joint that closes a leg at the platform."""
+
+    SPHERICAL = "S"
+    REVOLUTE = "R"
+    UNIVERSAL = "U"
+    RIGID = "rigid"
+
+
+@dataclass(frozen=True)
+class Body:
+    """Inertia of a rigid body, in the body's own frame.
+
+    Attributes:
+        mass: kg.
+        centre_of_mass: from the body's origin, m.
+        inertia: tensor about the centre of mass, body axes, kg m^2
+            (off-diagonal entry ixy = -integral of x y dm).
+    """
+
+    mass: float = 0.0
+    centre_of_mass: Vector3 = ZERO3
+    inertia: Matrix3 = ZERO33
+
+    @property
+    def is_massless(self) -> bool:
+        """Whether the body has neither mass nor inertia (a structural fact)."""
+        return self.mass == 0.0 and not any(any(row) for row in self.inertia)
+
+
+@dataclass(frozen=True)
+class Joint:
+    """A joint with one freedom and the link that it moves.
+
+    Attributes:
+        kind: revolute, prismatic or helical.
+        axis: unit vector in the preceding link's frame.
+        offset: from the preceding joint's origin (the first: from the leg's
+            base point) to this joint's, in the preceding link's frame, m.
+        pitch: advance of a helical joint per angle, m/rad; 0 otherwise.
+        actuated: the joint is driven.
+        extra: the displacement is a generalised coordinate of its own.
+        link: inertia of the link that the joint moves, in the link's frame.
+    """
+
+    kind: JointKind
+    axis: Vector3
+    offset: Vector3 = ZERO3
+    pitch: float = 0.0
+    actuated: bool = False
+    extra: bool = False
+    link: Body = Body()
+
+
+@dataclass(frozen=True)
+class PlatformJoint:
+    """The joint that closes a leg at the platform.
+
+    Attributes:
+        kind: spherical, revolute, universal or rigid.
+        offset: position in the last link's frame, m.
+        axis_link: axis fixed in the last link (R, U), last link's frame.
+        axis_platform: axis fixed in the platform (R, U), platform frame.
+        rotation: platform axes in the last link's frame (rigid):
+            base_R_link rotation = base_R_platform.
+    """
+
+    kind: PlatformJointKind
+    offset: Vector3 = ZERO3
+    axis_link: Vector3 | None = None
+    axis_platform: Vector3 | None = None
+    rotation: Matrix3 | None = None
+
+
+@dataclass(frozen=True)
+class Leg:
+    """A chain of joints from the base to the platform.
+
+    Attributes:
+        base_point: in the base frame, m.
+        base_frame: rotation from leg axes to base axes.
+        joints: from the base to the platform.
+        platform_joint: the joint that closes the chain.
+        platform_point: of the platform joint, in the platform frame, m.
+    """
+
+    base_point: Vector3
+    base_frame: Matrix3
+    joints: tuple[Joint, ...]
+    platform_joint: PlatformJoint
+    platform_point: Vector3
+
+
+@dataclass(frozen=True)
+class Home:
+    """A pose and the joint displacements that close the loops there.
+
+    It chooses the assembly branch of every leg.
+
+    Attributes:
+        X: platform coordinates followed by the extra coordinates.
+        q: displacements of all chain joints, leg by leg from the base.
+    """
+
+    X: tuple[float, ...]
+    q: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Manipulator:
+    """A platform carried by legs in parallel, in a task space.
+
+    Attributes:
+        name: identifier used for files and prefixes of generated names.
+        title: one line for people.
+        space: task space.
+        gravity: gravitational acceleration in the base frame, m/s^2.
+        platform: inertia of the platform in the platform frame.
+        legs: in the order that fixes q, tau, the columns of H, and lambda.
+        home: a pose that closes the loops; fixes the assembly branch.
+        fixed_centre: centre of rotation in the base frame (spherical only), m.
+    """
+
+    name: str
+    title: str
+    space: Space
+    gravity: Vector3
+    platform: Body
+    legs: tuple[Leg, ...]
+    home: Home
+    fixed_centre: Vector3 | None = None
