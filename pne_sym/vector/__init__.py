@@ -1,0 +1,76 @@
+"""Abstract vector algebra on SymPy: nodes, Rules I and II, linear forms.
+
+Vectors and tensors are coordinate-free SymPy objects; scalars are ordinary
+SymPy expressions that may contain `Dot` and `PlaneCross` of vectors.  Nothing
+here knows mechanics.
+"""
+
+from pne_sym.vector.linear import LinearForm, linear_form
+from pne_sym.vector.nodes import (
+    Apply,
+    Axial,
+    Compose,
+    Cross,
+    Dot,
+    Identity,
+    LegSum,
+    Outer,
+    Perp,
+    PlaneCross,
+    Skew,
+    Tensor,
+    TensorAdd,
+    TensorLegSum,
+    TensorScale,
+    TensorSymbol,
+    Transpose,
+    Vector,
+    VectorAdd,
+    VectorLegSum,
+    VectorScale,
+    VectorSymbol,
+    ZeroTensor,
+    ZeroVector,
+    norm,
+    tensor_sum,
+    vector_sum,
+)
+from pne_sym.vector.rules import RULE_I, RULE_II, Rule, RuleApplication, RuleI, RuleII
+
+__all__ = [
+    "RULE_I",
+    "RULE_II",
+    "Apply",
+    "Axial",
+    "Compose",
+    "Cross",
+    "Dot",
+    "Identity",
+    "LegSum",
+    "LinearForm",
+    "Outer",
+    "Perp",
+    "PlaneCross",
+    "Rule",
+    "RuleApplication",
+    "RuleI",
+    "RuleII",
+    "Skew",
+    "Tensor",
+    "TensorAdd",
+    "TensorLegSum",
+    "TensorScale",
+    "TensorSymbol",
+    "Transpose",
+    "Vector",
+    "VectorAdd",
+    "VectorLegSum",
+    "VectorScale",
+    "VectorSymbol",
+    "ZeroTensor",
+    "ZeroVector",
+    "linear_form",
+    "norm",
+    "tensor_sum",
+    "vector_sum",
+]

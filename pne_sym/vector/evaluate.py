@@ -1,0 +1,77 @@
+"""Numeric values of vector expressions: the meaning of every node, in one place.
+
+Used to verify derivations line by line; it shares nothing with the lowering.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from pne_sym.vector import nodes as n
+
+
+def skew(a: Any) -> Any:
+    """Matrix of the cross product, (3,) -> (3, 3)."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+def evaluate(expr: Any, values: Mapping[str, Any]) -> Any:
+    """Value of an expression, components in one common frame.
+
+    Args:
+        expr: vector, tensor or scalar expression without sums over legs.
+        values: by name; arrays (3,) or (2,) for vectors, (3, 3) for tensors,
+            floats for scalars.
+
+    Raises:
+        KeyError: a name has no value.
+        TypeError: the node has no numeric meaning here.
+    """
+    if isinstance(expr, n.VectorSymbol | n.TensorSymbol | sp.Symbol):
+        return values[expr.name]
+    if expr is n.ZeroVector:
+        return np.zeros(3)
+    if expr is n.ZeroTensor:
+        return np.zeros((3, 3))
+    if expr is n.Identity:
+        return np.eye(3)
+    if isinstance(expr, sp.Number):
+        return float(expr)
+    args = [evaluate(arg, values) for arg in expr.args]
+    operation = _OPERATIONS.get(type(expr))
+    if operation is None:
+        raise TypeError(f"no numeric meaning for {type(expr).__name__}")
+    return operation(*args)
+
+
+def _axial(t: Any) -> Any:
+    return np.array([t[2, 1] - t[1, 2], t[0, 2] - t[2, 0], t[1, 0] - t[0, 1]])
+
+
+_OPERATIONS: dict[type, Any] = {
+    n.VectorAdd: lambda *terms: sum(terms),
+    n.TensorAdd: lambda *terms: sum(terms),
+    n.VectorScale: lambda s, a: s * a,
+    n.TensorScale: lambda s, a: s * a,
+    n.Cross: np.cross,
+    n.Perp: lambda a: np.array([-a[1], a[0]]),
+    n.PlaneCross: lambda a, b: a[0] * b[1] - a[1] * b[0],
+    n.Dot: lambda a, b: float(np.dot(a, b)),
+    n.Apply: lambda t, a: t @ a,
+    n.Compose: lambda t, s: t @ s,
+    n.Transpose: lambda t: t.T,
+    n.Skew: skew,
+    n.Outer: np.outer,
+    n.Axial: _axial,
+    sp.Add: lambda *terms: sum(terms),
+    sp.Mul: lambda *factors: np.prod(factors),
+    sp.Pow: lambda base, exponent: base**exponent,
+    sp.sin: np.sin,
+    sp.cos: np.cos,
+    sp.atan2: np.arctan2,
+    sp.acos: np.arccos,
+}

@@ -1,0 +1,203 @@
+"""Vector expressions that are linear in an unknown as coefficient times unknown plus remainder.
+
+`linear_form` walks the expression once.  Products that hide the unknown are
+opened by Rule I and Rule II, and each use of a rule is recorded.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.vector.nodes import (
+    Apply,
+    Cross,
+    Dot,
+    Identity,
+    PlaneCross,
+    Transpose,
+    Vector,
+    VectorAdd,
+    VectorScale,
+    VectorSymbol,
+    ZeroVector,
+    vector_sum,
+)
+from pne_sym.vector.rules import (
+    RULE_II,
+    RuleApplication,
+    apply_rule_i,
+    apply_rule_ii,
+)
+
+Coefficients = dict[Any, Any]
+
+
+class NotLinearError(ValueError):
+    """The expression is not linear in the unknowns."""
+
+
+@dataclass(frozen=True)
+class LinearForm:
+    """expr = sum over unknowns of coefficient * unknown + remainder.
+
+    Attributes:
+        coefficients: by unknown.  For a vector unknown a tensor (of a vector
+            expression) or a vector c meaning c . x (of a scalar expression);
+            for a scalar unknown a vector or a scalar.
+        remainder: the part without unknowns, of the expression's own type.
+        steps: the uses of Rules I and II, in order.
+    """
+
+    coefficients: Mapping[Any, Any]
+    remainder: Any
+    steps: tuple[RuleApplication, ...] = field(default=())
+
+
+def linear_form(
+    expr: Any,
+    unknowns: Sequence[Any],
+    known: Mapping[Any, LinearForm] | None = None,
+) -> LinearForm:
+    """Collect the unknowns of a vector or scalar expression.
+
+    Args:
+        expr: vector or scalar expression, linear in the unknowns.
+        unknowns: vector symbols or scalar symbols.
+        known: linear forms of names that depend on the unknowns themselves.
+
+    Raises:
+        NotLinearError: the expression is not linear in the unknowns.
+
+    Reference: section 2.3, Rules I and II, Eq. 4.
+    """
+    collector = _Collector(tuple(unknowns), dict(known or {}))
+    coefficients, remainder = (
+        collector.vector(expr) if isinstance(expr, Vector) else collector.scalar(sp.sympify(expr))
+    )
+    return LinearForm(coefficients, remainder, tuple(collector.steps))
+
+
+class _Collector:
+    def __init__(self, unknowns: tuple[Any, ...], known: dict[Any, LinearForm]) -> None:
+        self.unknowns = unknowns
+        self.known = known
+        self.steps: list[RuleApplication] = []
+
+    def depends(self, expr: Any) -> bool:
+        if expr in self.unknowns or expr in self.known:
+            return True
+        return any(self.depends(arg) for arg in getattr(expr, "args", ()))
+
+    def vector(self, expr: Any) -> tuple[Coefficients, Any]:
+        if expr in self.known:
+            form = self.known[expr]
+            return dict(form.coefficients), form.remainder
+        if expr in self.unknowns:
+            return {expr: Identity}, ZeroVector
+        if not self.depends(expr):
+            return {}, expr
+        if isinstance(expr, VectorAdd):
+            return self._sum([self.vector(term) for term in expr.args])
+        if isinstance(expr, VectorScale):
+            return self._scaled(*expr.args)
+        if isinstance(expr, Cross):
+            return self._cross(*expr.args)
+        if isinstance(expr, Apply) and not self.depends(expr.args[0]):
+            tensor = expr.args[0]
+            coefficients, remainder = self.vector(expr.args[1])
+            return {x: tensor @ c for x, c in coefficients.items()}, tensor @ remainder
+        raise NotLinearError(f"not linear in the unknowns: {expr}")
+
+    def _sum(self, parts: list[tuple[Coefficients, Any]]) -> tuple[Coefficients, Any]:
+        total: Coefficients = {}
+        for coefficients, _ in parts:
+            for x, c in coefficients.items():
+                total[x] = total[x] + c if x in total else c
+        remainders = [remainder for _, remainder in parts]
+        if all(isinstance(r, Vector) for r in remainders):
+            return total, vector_sum(remainders)
+        return total, sp.Add(*remainders)
+
+    def _scaled(self, factor: Any, vector: Any) -> tuple[Coefficients, Any]:
+        if not self.depends(factor):
+            coefficients, remainder = self.vector(vector)
+            return {x: c * factor for x, c in coefficients.items()}, remainder * factor
+        if self.depends(vector):
+            raise NotLinearError("a product of two factors that both hold unknowns")
+        scalar_coefficients, remainder = self.scalar(factor)
+        result: Coefficients = {}
+        for x, c in scalar_coefficients.items():
+            if isinstance(x, VectorSymbol):
+                result[x], step = apply_rule_i(c, x, vector)
+                self.steps.append(step)
+            else:
+                result[x] = vector * c
+        return result, vector * remainder
+
+    def _cross(self, a: Any, b: Any) -> tuple[Coefficients, Any]:
+        if self.depends(a) and self.depends(b):
+            raise NotLinearError("a cross product of two factors that both hold unknowns")
+        fixed, moving, sign = (a, b, 1) if self.depends(b) else (b, a, -1)
+        coefficients, remainder = self.vector(moving)
+        result: Coefficients = {}
+        for x, c in coefficients.items():
+            if not isinstance(x, VectorSymbol):
+                result[x] = Cross(fixed, c) * sign
+                continue
+            tensor, _ = apply_rule_ii(fixed, x, sp.Integer(sign))
+            result[x] = tensor @ c
+            before = Cross(fixed, c @ x) if sign == 1 else Cross(c @ x, fixed)
+            self.steps.append(RuleApplication(RULE_II, before, result[x] @ x))
+        return result, Cross(fixed, remainder) * sign
+
+    def scalar(self, expr: Any) -> tuple[Coefficients, Any]:
+        if expr in self.known:
+            form = self.known[expr]
+            return dict(form.coefficients), form.remainder
+        if expr in self.unknowns:
+            return {expr: sp.S.One}, sp.S.Zero
+        if not self.depends(expr):
+            return {}, expr
+        if isinstance(expr, sp.Add):
+            return self._sum([self.scalar(term) for term in expr.args])
+        if isinstance(expr, sp.Mul):
+            dependent = [arg for arg in expr.args if self.depends(arg)]
+            if len(dependent) > 1:
+                raise NotLinearError("a product of two factors that both hold unknowns")
+            factor = expr / dependent[0]
+            coefficients, remainder = self.scalar(dependent[0])
+            return {x: c * factor for x, c in coefficients.items()}, factor * remainder
+        if isinstance(expr, Dot | PlaneCross):
+            return self._product(expr)
+        raise NotLinearError(f"not linear in the unknowns: {expr}")
+
+    def _product(self, expr: Any) -> tuple[Coefficients, Any]:
+        a, b = expr.args
+        if self.depends(a) and self.depends(b):
+            raise NotLinearError("a product of two vectors that both hold unknowns")
+        fixed, moving, sign = (a, b, 1) if self.depends(b) else (b, a, -1)
+        coefficients, remainder = self.vector(moving)
+        if isinstance(expr, Dot):
+            return (
+                {x: _dot(fixed, c, x) for x, c in coefficients.items()},
+                Dot(fixed, remainder),
+            )
+        turned = RULE_II.plane_coefficient(fixed) * sign
+        result: Coefficients = {}
+        for x, c in coefficients.items():
+            result[x] = _dot(turned, c, x)
+            if isinstance(x, VectorSymbol):
+                before = PlaneCross(fixed, c @ x) * sign
+                self.steps.append(RuleApplication(RULE_II, before, Dot(result[x], x)))
+        return result, Dot(turned, remainder)
+
+
+def _dot(fixed: Any, coefficient: Any, unknown: Any) -> Any:
+    """Coefficient of fixed . (coefficient unknown)."""
+    if isinstance(unknown, VectorSymbol):
+        return Transpose(coefficient) @ fixed
+    return Dot(fixed, coefficient)
