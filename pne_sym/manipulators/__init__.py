@@ -1,0 +1,52 @@
+"""The catalogue: one specification file per manipulator, and no algebra.
+
+>>> from pne_sym import manipulators
+>>> manipulators.load("stewart").title
+'6-UPS Stewart platform'
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib import resources
+from importlib.resources.abc import Traversable
+
+from pne_sym.model.entry import nearest
+from pne_sym.model.errors import SpecError, show
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.reader import from_text
+
+_SUFFIX = ".toml"
+
+
+@cache
+def names() -> tuple[str, ...]:
+    """The names of the catalogue, in alphabetical order."""
+    files = resources.files(__name__).iterdir()
+    return tuple(sorted(f.name.removesuffix(_SUFFIX) for f in files if f.name.endswith(_SUFFIX)))
+
+
+def path(name: str) -> Traversable:
+    """The specification file of a manipulator of the catalogue.
+
+    Raises:
+        SpecError: no such name (the message has the nearest ones).
+    """
+    if name not in names():
+        raise SpecError(
+            "catalogue",
+            "",
+            f"no manipulator {show(name)}{nearest(name, names())}",
+            "one of " + ", ".join(names()),
+        )
+    return resources.files(__name__) / (name + _SUFFIX)
+
+
+def load(name: str) -> Manipulator:
+    """A manipulator of the catalogue.
+
+    Raises:
+        SpecError: no such name (the message has the nearest ones).
+    """
+    file = path(name)
+    return from_text(file.read_text(encoding="utf-8"), _SUFFIX, file.name)

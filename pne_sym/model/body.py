@@ -1,0 +1,112 @@
+"""Mass, centre of mass and inertia of a link or the platform."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import numpy.typing as npt
+
+from pne_sym.model.entry import Entry
+from pne_sym.model.errors import SpecWarning
+from pne_sym.model.manipulator import ZERO3, ZERO33, Body, Matrix3, Vector3
+from pne_sym.model.values import matrix, not_negative, number, numbers, vector
+
+FIELDS = ("mass", "centre_of_mass", "inertia", "inertia_about")
+_COMPONENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+_FORMS = (
+    "a 3x3 tensor, three principal values [ixx, iyy, izz], "
+    "or a table of ixx, iyy, izz, ixy, ixz, iyz (kg m^2)"
+)
+_RELATIVE = 1e-9
+"""Rounding allowed in symmetry, sign and triangle inequality, of the largest entry."""
+
+
+def read_body(entry: Entry, *, plane: bool) -> Body:
+    """The inertia of a body.
+
+    Args:
+        entry: a table with mass (kg), centre_of_mass (m, body frame), inertia
+            (kg m^2, body axes) and inertia_about ("centre_of_mass" or "origin").
+        plane: motion in the plane: two-component centre of mass, izz alone counts.
+
+    Raises:
+        SpecError: a negative mass, or an inertia that no body can have.
+    """
+    table = entry.table(FIELDS)
+    mass = not_negative(table.require("mass", "a number (kg)"))
+    point = table.get("centre_of_mass")
+    centre = vector(point, plane=plane) if point else ZERO3
+    inertia = table.get("inertia")
+    about = table.get("inertia_about")
+    if inertia is None:
+        table.refuse(("inertia_about",), "there is no inertia here")
+        return Body(mass, centre)
+    tensor = _tensor(inertia, plane=plane)
+    if about and about.choice(("centre_of_mass", "origin")) == "origin":
+        tensor = _moved_to_centre(tensor, mass, centre)
+    if plane:
+        _check_planar(inertia, tensor)
+    else:
+        _check_spatial(inertia, tensor)
+    return Body(mass, centre, tensor)
+
+
+def _tensor(entry: Entry, *, plane: bool) -> Matrix3:
+    value = entry.value
+    if isinstance(value, dict):
+        table = entry.table(_COMPONENTS)
+        found = {name: number(field) for name, field in table.fields.items()}
+        ixx, iyy, izz, ixy, ixz, iyz = (found.get(name, 0.0) for name in _COMPONENTS)
+        return ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
+    if plane and isinstance(value, int | float):
+        return (ZERO3, ZERO3, (0.0, 0.0, number(entry)))
+    if not isinstance(value, list | tuple):
+        raise entry.fault(("the number izz, " if plane else "") + _FORMS)
+    if value and not isinstance(value[0], list | tuple):
+        ixx, iyy, izz = numbers(entry, 3, _FORMS)
+        return ((ixx, 0.0, 0.0), (0.0, iyy, 0.0), (0.0, 0.0, izz))
+    return matrix(entry)
+
+
+def _moved_to_centre(tensor: Matrix3, mass: float, centre: Vector3) -> Matrix3:
+    """The tensor about the centre of mass from the one about the body's origin (Steiner)."""
+    c = np.array(centre)
+    return _matrix3(np.array(tensor) - mass * (c @ c * np.eye(3) - np.outer(c, c)))
+
+
+def _check_planar(entry: Entry, tensor: Matrix3) -> None:
+    if tensor[2][2] < 0.0:
+        raise entry.fault("izz about the centre of mass not negative", _told(tensor[2][2], "izz"))
+
+
+def _check_spatial(entry: Entry, tensor: Matrix3) -> None:
+    array = np.array(tensor)
+    rounding = _RELATIVE * float(np.abs(array).max())
+    if np.abs(array - array.T).max() > rounding:
+        raise entry.fault("a symmetric tensor")
+    smallest, middle, largest = np.linalg.eigvalsh(array)
+    if smallest < -rounding:
+        raise entry.fault(
+            "a tensor about the centre of mass without negative principal moments",
+            _told(smallest, "principal moment"),
+        )
+    if largest > smallest + middle + rounding:
+        warnings.warn(
+            f"{entry.source}: {entry.where}: principal moments {smallest:.6g}, {middle:.6g}, "
+            f"{largest:.6g} kg m^2 belong to no body: the largest exceeds the sum of the others",
+            SpecWarning,
+            stacklevel=2,
+        )
+
+
+def _told(value: float, what: str) -> str:
+    return f"{what} {value:.6g} kg m^2"
+
+
+def _matrix3(array: npt.NDArray[np.float64]) -> Matrix3:
+    x, y, z = array.tolist()
+    return (tuple(x), tuple(y), tuple(z))
+
+
+MASSLESS = Body(0.0, ZERO3, ZERO33)

@@ -1,0 +1,157 @@
+"""A value of a specification together with the place where it stands.
+
+Readers take entries, never bare values, so that every fault can name its
+place as the author wrote it, also inside a shared leg type or an override.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+from pne_sym.model.errors import SpecError, printable, show
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A value and where it stands.
+
+    Attributes:
+        source: the file, or what stands for it.
+        where: path of the field, such as `legs[0].joints[1].axis`.
+        value: what the file holds there.
+        below: the table whose fields this one overrides, one by one.
+    """
+
+    source: str
+    where: str
+    value: object
+    below: Entry | None = None
+
+    def fault(self, expected: str, problem: str = "") -> SpecError:
+        """The error for this value; `problem` defaults to naming the value."""
+        return SpecError(self.source, self.where, problem or f"value {show(self.value)}", expected)
+
+    def table(self, known: Iterable[str]) -> Table:
+        """The fields of a table.
+
+        Args:
+            known: names that the table may have.
+
+        Raises:
+            SpecError: not a table, or a field that is not known (the message
+                has the nearest known name).
+        """
+        known = tuple(known)
+        fields = dict(self.below.table(known).fields) if self.below else {}
+        for name, entry in self.named():
+            if name not in known:
+                raise self._unknown(name, known)
+            lower = fields.get(name)
+            mergeable = lower is not None and isinstance(lower.value, Mapping)
+            if mergeable and isinstance(entry.value, Mapping):
+                entry = Entry(self.source, entry.where, entry.value, below=lower)
+            fields[name] = entry
+        return Table(self, fields)
+
+    def named(self) -> Iterator[tuple[str, Entry]]:
+        """Fields of a table with free names; a JSON null counts as absent."""
+        if not isinstance(self.value, Mapping):
+            raise self.fault("a table")
+        for name, value in self.value.items():
+            if value is not None:
+                where = _join(self.where, name)
+                yield str(name), Entry(self.source, where, value)
+
+    def items(self) -> list[Entry]:
+        """The elements of a list.
+
+        Raises:
+            SpecError: not a list.
+        """
+        if not isinstance(self.value, list | tuple):
+            raise self.fault("a list")
+        return [Entry(self.source, f"{self.where}[{i}]", v) for i, v in enumerate(self.value)]
+
+    def text(self) -> str:
+        """The value as a string.
+
+        Raises:
+            SpecError: not a string.
+        """
+        if not isinstance(self.value, str):
+            raise self.fault("a string")
+        return self.value
+
+    def choice(self, allowed: Sequence[str]) -> str:
+        """The value as one of some words.
+
+        Raises:
+            SpecError: none of them (the message has the nearest).
+        """
+        if isinstance(self.value, str) and self.value in allowed:
+            return self.value
+        hint = nearest(self.value, allowed) if isinstance(self.value, str) else ""
+        raise self.fault("one of " + ", ".join(allowed) + hint)
+
+    def flag(self) -> bool:
+        """The value as true or false.
+
+        Raises:
+            SpecError: something else.
+        """
+        if not isinstance(self.value, bool):
+            raise self.fault("true or false")
+        return self.value
+
+    def _unknown(self, name: str, known: tuple[str, ...]) -> SpecError:
+        problem = f"unknown field {show(name)}{nearest(name, known)}"
+        return SpecError(self.source, self.where, problem, "one of " + ", ".join(known))
+
+
+@dataclass(frozen=True)
+class Table:
+    """The known fields of a table that are present."""
+
+    entry: Entry
+    fields: Mapping[str, Entry]
+
+    def get(self, name: str) -> Entry | None:
+        """The field, or None where it is left out."""
+        return self.fields.get(name)
+
+    def require(self, name: str, expected: str) -> Entry:
+        """The field.
+
+        Args:
+            name: of the field.
+            expected: what it should hold, for the message.
+
+        Raises:
+            SpecError: the field is left out.
+        """
+        if name not in self.fields:
+            raise self.entry.fault(f"{name} = {expected}", problem=f"missing field '{name}'")
+        return self.fields[name]
+
+    def refuse(self, names: Iterable[str], reason: str) -> None:
+        """Refuse fields that have no meaning beside the others.
+
+        Raises:
+            SpecError: one of them is present.
+        """
+        for name in names:
+            if name in self.fields:
+                raise self.fields[name].fault(f"no such field: {reason}")
+
+
+def nearest(name: str, known: Iterable[str]) -> str:
+    """A hint with the known names nearest to a mistaken one, or nothing."""
+    close = difflib.get_close_matches(name[:60].lower(), list(known), n=3, cutoff=0.5)
+    return f" (did you mean {' or '.join(close)}?)" if close else ""
+
+
+def _join(where: str, name: object) -> str:
+    field = printable(str(name), 40)
+    return f"{where}.{field}" if where else field

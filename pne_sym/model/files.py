@@ -1,0 +1,102 @@
+"""Text of a specification to plain tables; bounded in size and nesting."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from pathlib import Path
+
+from pne_sym.model.errors import SpecError, printable
+
+MAX_BYTES = 4 * 1024 * 1024
+MAX_DEPTH = 16
+SUFFIXES = (".toml", ".json")
+
+_KEY_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
+_LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-])(?:{_KEY_PART}\.[ \t]*+){{{MAX_DEPTH}}}")
+"""A dotted key nested too deeply: tomllib needs quadratic time for such keys."""
+
+
+def read_file(path: Path) -> str:
+    """The text of a specification file.
+
+    Raises:
+        SpecError: unreadable, too large, not UTF-8, or of an unknown kind.
+    """
+    source = str(path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise SpecError(source, "", f"file of kind '{path.suffix}'", "a .toml or .json file")
+    try:
+        if not path.is_file():
+            problem = "not a regular file" if path.exists() else "no such file"
+            raise SpecError(source, "", problem, "a specification in TOML or JSON")
+        with path.open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:
+        if isinstance(error, SpecError):
+            raise
+        reason = error.strerror if isinstance(error, OSError) else str(error)
+        raise SpecError(source, "", f"cannot be read: {reason}") from None
+    if len(content) > MAX_BYTES:
+        raise SpecError(source, "", "file too large", f"at most {MAX_BYTES} bytes")
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise SpecError(source, "", f"byte {error.start} is not UTF-8", "UTF-8 text") from None
+
+
+def parse(text: str, suffix: str, source: str) -> object:
+    """Tables, lists, numbers and strings from the text of a specification.
+
+    Args:
+        text: of the file.
+        suffix: `.toml` or `.json`.
+        source: for messages.
+
+    Raises:
+        SpecError: a syntax error (with its line), or too much nesting.
+    """
+    too_deep = SpecError(source, "", "nested too deeply", f"at most {MAX_DEPTH} levels")
+    try:
+        if suffix.lower() == ".json":
+            data = json.loads(text, object_pairs_hook=_distinct)
+        elif _LONG_KEY.search(text):
+            raise too_deep
+        else:
+            data = tomllib.loads(text)
+    except RecursionError:
+        raise too_deep from None
+    except SpecError:
+        raise
+    except ValueError as error:
+        # TOMLDecodeError, JSONDecodeError, and integers of thousands of digits.
+        raise SpecError(source, "", printable(f"syntax error: {error}")) from None
+    if _depth_exceeds(data, MAX_DEPTH):
+        raise too_deep
+    return data
+
+
+def _distinct(pairs: list[tuple[str, object]]) -> dict[str, object]:
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        seen: set[str] = set()
+        twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
+        raise ValueError(f"field {twice[:40]!r} stands twice in one table")
+    return table
+
+
+def _depth_exceeds(data: object, limit: int) -> bool:
+    """Level by level rather than by recursion, which hostile nesting would exhaust."""
+    level = [data]
+    for _ in range(limit + 1):
+        inner: list[object] = []
+        for value in level:
+            if isinstance(value, dict):
+                inner.extend(value.values())
+            elif isinstance(value, list):
+                inner.extend(value)
+        if not inner:
+            return False
+        level = inner
+    return True

@@ -1,0 +1,82 @@
+"""A manipulator as the full form of its specification: plain, JSON-ready, without shorthand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from pne_sym.model.manipulator import (
+    Body,
+    Joint,
+    JointKind,
+    Leg,
+    Manipulator,
+    Matrix3,
+    PlatformJoint,
+)
+
+Plain = dict[str, object]
+
+
+def to_full_form(manipulator: Manipulator) -> Plain:
+    """The full form; reading it gives an equal manipulator."""
+    m = manipulator
+    form: Plain = {
+        "name": m.name,
+        "title": m.title,
+        "space": m.space.value,
+        "gravity": list(m.gravity),
+    }
+    if m.fixed_centre is not None:
+        form["fixed_centre"] = list(m.fixed_centre)
+    form["platform"] = _body(m.platform)
+    form["legs"] = [_leg(leg) for leg in m.legs]
+    form["home"] = {"X": list(m.home.X), "q": list(m.home.q)}
+    return form
+
+
+def _leg(leg: Leg) -> Plain:
+    return {
+        "base_point": list(leg.base_point),
+        "base_frame": _rows(leg.base_frame),
+        "joints": [_joint(joint) for joint in leg.joints],
+        "platform_joint": _platform_joint(leg.platform_joint),
+        "platform_point": list(leg.platform_point),
+    }
+
+
+def _joint(joint: Joint) -> Plain:
+    form: Plain = {
+        "kind": joint.kind.value,
+        "axis": list(joint.axis),
+        "offset": list(joint.offset),
+    }
+    if joint.kind is JointKind.HELICAL:
+        form["pitch"] = joint.pitch
+    return form | {
+        "actuated": joint.actuated,
+        "extra": joint.extra,
+        "link": _body(joint.link),
+    }
+
+
+def _platform_joint(joint: PlatformJoint) -> Plain:
+    form: Plain = {"kind": joint.kind.value, "offset": list(joint.offset)}
+    if joint.axis_link is not None:
+        form["axis_link"] = list(joint.axis_link)
+    if joint.axis_platform is not None:
+        form["axis_platform"] = list(joint.axis_platform)
+    if joint.rotation is not None:
+        form["rotation"] = _rows(joint.rotation)
+    return form
+
+
+def _body(body: Body) -> Plain:
+    return {
+        "mass": body.mass,
+        "centre_of_mass": list(body.centre_of_mass),
+        "inertia": _rows(body.inertia),
+    }
+
+
+def _rows(matrix: Matrix3 | Sequence[Sequence[float]]) -> list[list[float]]:
+    return [list(row) for row in matrix]

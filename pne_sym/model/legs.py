@@ -1,0 +1,147 @@
+"""Legs of a specification: written out, or of a shared type with own geometry."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+
+from pne_sym.model.entry import Entry, Table, nearest
+from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.joints import check_count, read_joint, read_platform_joint
+from pne_sym.model.manipulator import (
+    IDENTITY3,
+    ZERO3,
+    Joint,
+    Leg,
+    PlatformJoint,
+    PlatformJointKind,
+    Space,
+)
+from pne_sym.model.names import read_type_name
+from pne_sym.model.values import rotation, vector
+
+FIELDS = ("type", "base_point", "base_frame", "joints", "platform_joint", "platform_point")
+TYPE_FIELDS = ("joints", "platform_joint")
+MAX_LEGS = 256
+
+_LegTypes = Mapping[str, Table]
+
+
+def is_plane(space: Space) -> bool:
+    """Whether the mechanism moves in the plane z = 0."""
+    return space in (Space.POINT, Space.PLANAR)
+
+
+def read_legs(legs: Entry, leg_types: Entry | None, space: Space) -> tuple[Leg, ...]:
+    """All legs, with leg types and overrides expanded.
+
+    Args:
+        legs: a list of tables of `FIELDS`.
+        leg_types: tables of `TYPE_FIELDS` by name, if any.
+        space: the task space.
+
+    Raises:
+        SpecError: what cannot be expanded or has no meaning.
+    """
+    types = _leg_types(leg_types)
+    entries = legs.items()
+    if not 1 <= len(entries) <= MAX_LEGS:
+        raise legs.fault(f"1 to {MAX_LEGS} legs", problem=f"{len(entries)} legs")
+    used: set[str] = set()
+    result = tuple(_read_leg(entry, types, used, space) for entry in entries)
+    for name in types.keys() - used:
+        entry = types[name].entry
+        message = f"{entry.source}: {entry.where}: no leg is of this type"
+        warnings.warn(message, SpecWarning, stacklevel=2)
+    return result
+
+
+def _leg_types(entry: Entry | None) -> _LegTypes:
+    if entry is None:
+        return {}
+    return {read_type_name(named, name): named.table(TYPE_FIELDS) for name, named in entry.named()}
+
+
+def _read_leg(entry: Entry, types: _LegTypes, used: set[str], space: Space) -> Leg:
+    table = entry.table(FIELDS)
+    plane = is_plane(space)
+    shared = _shared(table, types, used)
+    frame = table.get("base_frame")
+    return Leg(
+        base_point=vector(table.require("base_point", "its position (m)"), plane=plane),
+        base_frame=rotation(frame, plane=plane) if frame else IDENTITY3,
+        joints=_joints(table, shared, plane=plane),
+        platform_joint=_platform_joint(table, shared, plane=plane),
+        platform_point=_platform_point(table, space),
+    )
+
+
+def _shared(table: Table, types: _LegTypes, used: set[str]) -> Table | None:
+    """The leg type that the leg names, or None."""
+    entry = table.get("type")
+    if entry is None:
+        return None
+    name = entry.text()
+    if name not in types:
+        known = ", ".join(types) or "a table [leg_types.NAME] to be added"
+        raise entry.fault(f"the name of a leg type: {known}{nearest(name, types)}")
+    used.add(name)
+    return types[name]
+
+
+def _joints(table: Table, shared: Table | None, *, plane: bool) -> tuple[Joint, ...]:
+    own = table.get("joints")
+    if own is not None and not isinstance(own.value, Mapping):
+        source, entries = own, own.items()
+    elif shared is None:
+        source = own or table.require("joints", "a list of joints, or type = a leg type")
+        entries = source.items()
+    else:
+        source = shared.require("joints", "a list of joints")
+        entries = source.items()
+        if own is not None:
+            entries = _overridden(entries, own)
+    check_count(source, len(entries))
+    joints = tuple(joint for entry in entries for joint in read_joint(entry, plane=plane))
+    check_count(source, len(joints))
+    return joints
+
+
+def _overridden(entries: list[Entry], own: Entry) -> list[Entry]:
+    """Joints of a type with fields replaced by the leg's own tables `joints.0`, `joints.1` ..."""
+    result = list(entries)
+    numbers = {str(i): i for i in range(len(entries))}
+    for name, entry in own.named():
+        if name not in numbers:
+            raise SpecError(
+                own.source,
+                own.where,
+                f"unknown joint {name[:20]!r}",
+                "a joint of the leg type, counted from 0: " + ", ".join(numbers),
+            )
+        index = numbers[name]
+        result[index] = Entry(entry.source, entry.where, entry.value, below=entries[index])
+    return result
+
+
+def _platform_joint(table: Table, shared: Table | None, *, plane: bool) -> PlatformJoint:
+    own = table.get("platform_joint")
+    common = shared.get("platform_joint") if shared else None
+    entry = own or common
+    if entry is None:
+        return PlatformJoint(PlatformJointKind.REVOLUTE if plane else PlatformJointKind.SPHERICAL)
+    if own and common and isinstance(own.value, Mapping):
+        if isinstance(common.value, str):
+            common = Entry(common.source, common.where, {"kind": common.value})
+        entry = Entry(own.source, own.where, own.value, below=common)
+    return read_platform_joint(entry, plane=plane)
+
+
+def _platform_point(table: Table, space: Space) -> tuple[float, float, float]:
+    if space is not Space.POINT:
+        entry = table.require("platform_point", "its position in the platform frame (m)")
+        return vector(entry, plane=is_plane(space))
+    given = table.get("platform_point")
+    if given and vector(given, plane=True) != ZERO3:
+        raise given.fault("(0, 0) or nothing: in the space 'point' all legs meet at the output")
+    return ZERO3

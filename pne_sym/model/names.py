@@ -1,0 +1,74 @@
+"""The grammar of names: safe as a Python module, a C prefix and a folder."""
+
+from __future__ import annotations
+
+import keyword
+import re
+import sys
+
+from pne_sym.model.entry import Entry
+
+LONGEST = 40
+_GRAMMAR = re.compile(r"[a-z][a-z0-9_]*")
+_COMMANDS = "list check diff explain new draw all"
+_C_AND_CPP = """
+    alignas alignof and_eq asm atomic_cancel auto bitand bitor bool case catch char char8_t
+    char16_t char32_t compl concept const const_cast consteval constexpr constinit co_await
+    co_return co_yield decltype default delete do double dynamic_cast enum explicit export
+    extern final float friend goto inline int long main mutable namespace new noexcept not_eq
+    nullptr operator or_eq override private protected public register reinterpret_cast requires
+    restrict short signed sizeof static static_assert static_cast struct switch template this
+    thread_local throw typedef typeid typename typeof union unsigned using virtual void
+    volatile wchar_t xor xor_eq
+"""
+_C_HEADERS = """
+    assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
+    stdarg stdbool stddef stdint stdio stdlib string tgmath time wchar wctype
+"""
+_RESERVED: tuple[tuple[str, frozenset[str]], ...] = (
+    ("a command of pne-gen", frozenset(_COMMANDS.split())),
+    ("a Python keyword", frozenset((*keyword.kwlist, *keyword.softkwlist))),
+    ("a keyword of C or C++", frozenset(_C_AND_CPP.split())),
+    ("a standard header of C", frozenset(_C_HEADERS.split())),
+    ("a Python module", sys.stdlib_module_names | {"numpy"}),
+)
+_DEVICES = re.compile(r"con|prn|aux|nul|com[0-9]|lpt[0-9]")
+
+
+def read_name(entry: Entry) -> str:
+    """The name of a manipulator.
+
+    Raises:
+        SpecError: outside the grammar, or a word with another meaning: the
+            generated module and header must not shadow those of the languages.
+    """
+    name = entry.text()
+    if len(name) > LONGEST or not _GRAMMAR.fullmatch(name):
+        raise entry.fault(
+            f"a lower-case letter, then lower-case letters, digits, underscores; "
+            f"at most {LONGEST} characters"
+        )
+    reason = _reserved_as(name)
+    if reason:
+        raise entry.fault(f"another name: '{name}' is {reason}")
+    return name
+
+
+def read_type_name(entry: Entry, name: str) -> str:
+    """The name of a leg type: the same grammar, no reserved words.
+
+    Raises:
+        SpecError: outside the grammar.
+    """
+    if len(name) > LONGEST or not _GRAMMAR.fullmatch(name):
+        raise entry.fault(
+            "a lower-case letter, then lower-case letters, digits, underscores",
+            problem=f"leg type named {name[:LONGEST]!r}",
+        )
+    return name
+
+
+def _reserved_as(name: str) -> str:
+    if _DEVICES.fullmatch(name):
+        return "a device name on Windows"
+    return next((reason for reason, words in _RESERVED if name in words), "")

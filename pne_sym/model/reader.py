@@ -1,0 +1,127 @@
+"""The reader of specifications: TOML or JSON, shorthand or full form.
+
+Warnings are issued as `SpecWarning` through `warnings.warn`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from pne_sym.model.body import read_body
+from pne_sym.model.entry import Entry, Table
+from pne_sym.model.files import parse, read_file
+from pne_sym.model.full_form import to_full_form
+from pne_sym.model.home import read_home
+from pne_sym.model.legs import is_plane, read_legs
+from pne_sym.model.manipulator import ZERO3, Body, Manipulator, Space, Vector3
+from pne_sym.model.names import read_name
+from pne_sym.model.values import vector
+
+FIELDS = (
+    "name",
+    "title",
+    "space",
+    "gravity",
+    "fixed_centre",
+    "platform",
+    "leg_types",
+    "legs",
+    "home",
+)
+LONGEST_TITLE = 120
+STANDARD_GRAVITY = 9.81
+
+__all__ = ["from_mapping", "from_text", "read_spec", "to_full_form"]
+
+
+def read_spec(path: Path) -> Manipulator:
+    """Read a specification file.
+
+    Args:
+        path: a `.toml` or `.json` file.
+
+    Raises:
+        SpecError: the file is at fault: one message with file, field, value
+            and what is allowed.
+    """
+    return from_text(read_file(path), path.suffix, str(path))
+
+
+def from_text(text: str, suffix: str, source: str) -> Manipulator:
+    """Read a specification from text.
+
+    Args:
+        text: TOML or JSON.
+        suffix: `.toml` or `.json`.
+        source: what to call it in messages.
+
+    Raises:
+        SpecError: the text is at fault.
+    """
+    data = parse(text, suffix, source)
+    if not isinstance(data, Mapping):
+        raise Entry(source, "", data).fault("a table with name, space, platform, legs, home")
+    return from_mapping(data, source)
+
+
+def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
+    """Read a specification from plain tables, lists, numbers and strings.
+
+    Args:
+        data: as parsed from TOML or JSON.
+        source: what to call it in messages.
+
+    Raises:
+        SpecError: a field is at fault.
+    """
+    table = Entry(source, "", data).table(FIELDS)
+    name = read_name(table.require("name", "its name, such as my_robot"))
+    space = Space(table.require("space", "the task space").choice([space.value for space in Space]))
+    legs = read_legs(table.require("legs", "a list of legs"), table.get("leg_types"), space)
+    centre = _fixed_centre(table, space)
+    return Manipulator(
+        name=name,
+        title=_title(table, name),
+        space=space,
+        gravity=_gravity(table, space),
+        platform=_platform(table, space),
+        legs=legs,
+        home=read_home(table.require("home", "a pose X and displacements q"), space, legs, centre),
+        fixed_centre=centre,
+    )
+
+
+def _title(table: Table, name: str) -> str:
+    entry = table.get("title")
+    if entry is None:
+        return name
+    title = entry.text()
+    if not 1 <= len(title) <= LONGEST_TITLE or not title.isprintable():
+        raise entry.fault(f"one line of 1 to {LONGEST_TITLE} printable characters")
+    return title
+
+
+def _gravity(table: Table, space: Space) -> Vector3:
+    entry = table.get("gravity")
+    if entry is None:
+        down = (0.0, -STANDARD_GRAVITY, 0.0)
+        return down if is_plane(space) else (0.0, 0.0, -STANDARD_GRAVITY)
+    return vector(entry, plane=is_plane(space))
+
+
+def _platform(table: Table, space: Space) -> Body:
+    entry = table.require("platform", "a table with mass, centre_of_mass, inertia")
+    platform = read_body(entry, plane=is_plane(space))
+    if space is Space.POINT and platform.centre_of_mass != ZERO3:
+        raise Entry(
+            entry.source, f"{entry.where}.centre_of_mass", list(platform.centre_of_mass)
+        ).fault("(0, 0) or nothing: in the space 'point' the platform is the output point")
+    return platform
+
+
+def _fixed_centre(table: Table, space: Space) -> Vector3 | None:
+    if space is Space.SPHERICAL:
+        return vector(table.require("fixed_centre", "the centre of rotation, base frame (m)"))
+    table.refuse(("fixed_centre",), f"the space '{space}' has none, only 'spherical'")
+    return None
