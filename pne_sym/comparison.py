@@ -1,0 +1,89 @@
+"""Comparing a model's folder with what would be generated; writes nothing."""
+
+from __future__ import annotations
+
+import difflib
+import enum
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from pne_sym.writer import check_names, readable_errors
+
+_NOT_PRODUCT = frozenset({"__pycache__"})
+
+
+class DifferenceKind(enum.StrEnum):
+    """How a file differs from what would be generated."""
+
+    MISSING = "missing"
+    STALE = "stale"
+    CHANGED = "changed"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One file that is not what would be generated.
+
+    Attributes:
+        path: the file, below the output folder.
+        kind: missing; stale (would not be generated); or changed.
+        diff: unified diff from the file to what would be generated
+            (changed files only), otherwise empty.
+    """
+
+    path: Path
+    kind: DifferenceKind
+    diff: str = ""
+
+
+def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Difference]:
+    """Compare `out/name/` with what would be generated.
+
+    Args:
+        out: the output folder.
+        name: the model's name.
+        files: file name -> text, as for `write_model`.
+
+    Returns:
+        The differences, sorted by path; empty if the folder is up to date.
+
+    Raises:
+        OutputError: a file cannot be read.
+        ValueError: a name that could lead out of the folder.
+    """
+    check_names(name, files)
+    folder = out / name
+    with readable_errors(folder, "read"):
+        present = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
+        present -= _NOT_PRODUCT
+        differences = []
+        for file in sorted(present | set(files)):
+            path = Path(name, file)
+            if file not in present:
+                differences.append(Difference(path, DifferenceKind.MISSING))
+            elif file not in files:
+                differences.append(Difference(path, DifferenceKind.STALE))
+            elif (found := (folder / file).read_bytes()) != files[file].encode("utf-8"):
+                diff = _unified_diff(out / path, found, files[file])
+                differences.append(Difference(path, DifferenceKind.CHANGED, diff))
+    return differences
+
+
+def _unified_diff(path: Path, found: bytes, expected: str) -> str:
+    old = found.decode("utf-8", errors="backslashreplace")
+    lines = difflib.unified_diff(
+        _lines(old),
+        _lines(expected),
+        f"{path} (as it stands)",
+        f"{path} (as generated)",
+        lineterm="",
+    )
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _lines(text: str) -> list[str]:
+    """Split at line feeds only, telling a missing last one."""
+    lines = text.split("\n")
+    last = lines.pop()
+    return [*lines, f"{last}\n\\ No newline at end of file"] if last else lines
