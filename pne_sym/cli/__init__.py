@@ -1,0 +1,34 @@
+"""The command line `pne-gen`: thin; every command is a function of the library first."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Sequence
+
+from pne_sym.cli.arguments import arrange, unavailable
+
+
+def main(argv: Sequence[str] | None = None) -> None:
+    """Run `pne-gen` and leave the process with its exit code.
+
+    Args:
+        argv: the arguments after the program's name; default those of the process.
+
+    Raises:
+        SystemExit: always. 0 done, 1 a check found a difference, 2 the input
+            is at fault, 3 an internal error, 130 interrupted.
+    """
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    try:
+        from pne_sym.cli.app import app  # noqa: PLC0415 - an interruption here is told too
+        from pne_sym.cli.console import prepare_streams, print_error  # noqa: PLC0415
+
+        prepare_streams()
+        word = unavailable(arguments)
+        if word is not None:
+            print_error(f"{word!r} is not available in this version of pne-gen")
+            sys.exit(2)
+        app(arrange(arguments), prog_name="pne-gen")
+    except KeyboardInterrupt:
+        sys.stderr.write("pne-gen: interrupted\n")
+        sys.exit(130)

@@ -1,0 +1,238 @@
+"""The commands of `pne-gen`."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+import typer.core
+
+from pne_sym import comparison, writer
+from pne_sym.cli.arguments import GENERATE
+from pne_sym.cli.console import Report
+from pne_sym.cli.faults import DIFFERENT, told
+
+if TYPE_CHECKING:
+    from pne_sym.model.manipulator import Manipulator
+
+# The compiler is imported inside the commands: it brings SymPy, which
+# `--help`, `--version` and a mistyped option need not wait for.
+
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+    subcommand_metavar="NAME_OR_SPEC... | COMMAND [ARGUMENTS]",
+)
+
+Out = Annotated[
+    Path,
+    typer.Option(
+        "--out", "-o", metavar="DIR", help="Folder in which each model gets a folder of its own."
+    ),
+]
+Jobs = Annotated[
+    int,
+    typer.Option("--jobs", "-j", min=1, metavar="N", help="Models worked on at the same time."),
+]
+Quiet = Annotated[
+    bool, typer.Option("--quiet", "-q", help="Tell only errors, warnings and differences.")
+]
+Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an internal error.")]
+
+DEFAULT_OUT = Path("generated")
+ALL_CORES = os.cpu_count() or 1
+
+
+class _ModelsCommand(typer.core.TyperCommand):
+    """The command whose name is its argument: the usage line has it once."""
+
+    def collect_usage_pieces(self, *_: object) -> list[str]:
+        return ["[OPTIONS]"]
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version  # noqa: PLC0415
+
+        typer.echo(f"pne-gen {version('pne-sym')}")
+        raise typer.Exit
+
+
+EXAMPLES = """
+\b
+Examples:
+  pne-gen stewart --out generated/         a model of the catalogue
+  pne-gen my_robot.toml --out generated/   a manipulator of your own
+  pne-gen all --out generated/ --jobs 4    the whole catalogue
+  pne-gen check stewart --out generated/   is what stands there up to date?
+  pne-gen list                             what the catalogue has
+
+\b
+Exit codes:
+  0 done, 1 check found a difference, 2 the input is at fault,
+  3 internal error, 130 interrupted
+"""
+
+
+@app.callback(epilog=EXAMPLES)
+def _program(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_version, is_eager=True, help="Show the version and leave."
+        ),
+    ] = False,
+) -> None:
+    """Closed-form dynamics of parallel manipulators.
+
+    From a data file: a readable derivation, and NumPy and C code that stand alone.
+    """
+
+
+@app.command(GENERATE, cls=_ModelsCommand)
+def generate(
+    sources: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="NAME_OR_SPEC",
+            show_default=False,
+            help="Names in the catalogue (see pne-gen list) or spec files (.toml, .json).",
+        ),
+    ],
+    out: Out = DEFAULT_OUT,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Generate models.
+
+    DIR/NAME/ gets the derivation (NAME.md), the NumPy code (NAME.py), the C code
+    (NAME.h, NAME.c) and a manifest (NAME.json). A folder that stands there is
+    replaced as a whole.
+    """
+    with told(debug=debug):
+        writer.check_output(out)
+        _generate(_find(sources), out, jobs=1, report=Report(quiet=quiet))
+
+
+@app.command("all")
+def generate_all(
+    out: Out = DEFAULT_OUT,
+    jobs: Jobs = ALL_CORES,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Generate the whole catalogue."""
+    with told(debug=debug):
+        writer.check_output(out)
+        _generate(_find(_catalogue()), out, jobs=jobs, report=Report(quiet=quiet))
+
+
+@app.command("list")
+def list_models(debug: Debug = False) -> None:
+    """List the catalogue.
+
+    Name and title of each model; with a tab between them when piped.
+    """
+    with told(debug=debug):
+        rows = [(model.name, model.title) for model in _find(_catalogue())]
+        width = max((len(name) for name, _ in rows), default=0)
+        gap = "  " if sys.stdout.isatty() else "\t"
+        for name, title in rows:
+            start = name.ljust(width) if sys.stdout.isatty() else name
+            Report().line(f"{start}{gap}{title}")
+
+
+@app.command("check")
+def check(
+    sources: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="NAME_OR_SPEC", help="Default: the whole catalogue.", show_default=False
+        ),
+    ] = None,
+    out: Out = DEFAULT_OUT,
+    jobs: Jobs = 1,
+    quiet: Quiet = False,
+    debug: Debug = False,
+) -> None:
+    """Tell what in DIR is not up to date.
+
+    Compares with what would be generated and writes nothing. Exit code 0: up to date.
+    1: it differs; the differences are shown, and the command that mends them.
+    """
+    with told(debug=debug):
+        wanted = sources or list(_catalogue())
+        if not _check(wanted, _find(wanted), out, jobs=jobs, report=Report(quiet=quiet)):
+            raise typer.Exit(DIFFERENT)
+
+
+def _catalogue() -> tuple[str, ...]:
+    from pne_sym import manipulators  # noqa: PLC0415
+
+    return manipulators.names()
+
+
+def _find(sources: Sequence[str]) -> list[Manipulator]:
+    """Read every source before any work, so that a fault in the last costs nothing."""
+    from pne_sym.generation import InputError, find  # noqa: PLC0415
+
+    found: dict[str, str] = {}
+    models = []
+    for source in dict.fromkeys(sources):
+        model = find(source)
+        if model.name in found:
+            raise InputError(f"{found[model.name]} and {source} are both named {model.name!r}")
+        found[model.name] = source
+        models.append(model)
+    return models
+
+
+def _generate(models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report) -> None:
+    from pne_sym.generation import compile_many  # noqa: PLC0415
+
+    with report.progress(len(models)) as step:
+        step.working_on(_names(models))
+        for compiled in compile_many(models, jobs):
+            folder = writer.write_model(out, compiled.manipulator.name, compiled.files)
+            size = sum(len(text.encode()) for text in compiled.files.values())
+            report.line(f"wrote {folder}: {len(compiled.files)} files, {size / 1000:.0f} kB")
+            step.done()
+
+
+def _check(
+    sources: Sequence[str], models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report
+) -> bool:
+    """Report every difference; return whether there is none."""
+    from pne_sym.generation import compile_many  # noqa: PLC0415
+
+    differing = []
+    with report.progress(len(models)) as step:
+        step.working_on(_names(models))
+        for source, compiled in zip(sources, compile_many(models, jobs), strict=True):
+            name = compiled.manipulator.name
+            differences = comparison.check_model(out, name, compiled.files)
+            for difference in differences:
+                report.difference(f"{difference.kind}: {out / difference.path}")
+                for line in difference.diff.split("\n")[:-1]:
+                    report.difference(line)
+            if differences:
+                differing.append(source)
+            else:
+                report.line(f"up to date: {out / name}")
+            step.done()
+    if differing:
+        report.difference(f"to mend it: {shlex.join(['pne-gen', *differing, '--out', str(out)])}")
+    return not differing
+
+
+def _names(models: Sequence[Manipulator]) -> str:
+    names = [model.name for model in models]
+    return names[0] if len(names) == 1 else f"{len(names)} models"

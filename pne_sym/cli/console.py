@@ -1,0 +1,128 @@
+"""What `pne-gen` says: results on standard output, all else on standard error.
+
+On a terminal there is colour, and progress where work is long; in a pipe or a
+file there are plain lines.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import re
+import sys
+from collections.abc import Iterator
+from typing import TextIO
+
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    SpinnerColumn,
+    TextColumn,
+    TimeElapsedColumn,
+)
+from rich.text import Text
+
+_CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
+_DIFF_STYLES = (("+++", "bold"), ("---", "bold"), ("@@", "cyan"), ("+", "green"), ("-", "red"))
+
+
+def prepare_streams() -> None:
+    """Let a character that the terminal lacks be shown escaped, not fail."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def print_error(message: str) -> None:
+    """Print one error message on standard error."""
+    _print(sys.stderr, "pne-gen: error: ", message, "bold red")
+
+
+def print_warning(message: str) -> None:
+    """Print one warning on standard error."""
+    _print(sys.stderr, "pne-gen: warning: ", message, "yellow")
+
+
+class Report:
+    """Says what is being done and what came out.
+
+    Attributes:
+        quiet: only errors, warnings and differences are told.
+    """
+
+    def __init__(self, *, quiet: bool = False) -> None:
+        self.quiet = quiet
+        self._live: Progress | None = None
+
+    def line(self, text: str, style: str = "") -> None:
+        """Print a line of result, unless quiet."""
+        if self.quiet:
+            return
+        if self._live is not None and sys.stdout.isatty():
+            self._live.console.print(Text(_visible(text), style), soft_wrap=True)
+        else:
+            _print(sys.stdout, "", text, style)
+
+    def difference(self, line: str) -> None:
+        """Print a line of a unified diff, also if quiet."""
+        style = next((style for start, style in _DIFF_STYLES if line.startswith(start)), "")
+        _print(sys.stdout, "", line, style)
+
+    @contextlib.contextmanager
+    def progress(self, total: int) -> Iterator[Step]:
+        """Show progress through `total` models, on a terminal and unless quiet."""
+        console = Console(stderr=True)
+        if self.quiet or not console.is_terminal:
+            yield Step()
+            return
+        columns = [SpinnerColumn(), TextColumn("{task.description}")]
+        if total > 1:
+            columns += [BarColumn(), MofNCompleteColumn()]
+        progress = Progress(
+            *columns,
+            TimeElapsedColumn(),
+            console=console,
+            transient=True,
+            redirect_stdout=False,
+            redirect_stderr=False,
+        )
+        with progress:
+            self._live = progress
+            try:
+                yield Step(progress, total)
+            finally:
+                self._live = None
+
+
+class Step:
+    """Moves the progress display, where there is one."""
+
+    def __init__(self, progress: Progress | None = None, total: int = 0) -> None:
+        self._progress = progress
+        self._task = progress.add_task("", total=total) if progress else None
+
+    def working_on(self, text: str) -> None:
+        """Show what is being worked on."""
+        if self._progress is not None and self._task is not None:
+            self._progress.update(self._task, description=_visible(text))
+
+    def done(self) -> None:
+        """Count one model as done."""
+        if self._progress is not None and self._task is not None:
+            self._progress.advance(self._task)
+
+
+def _print(stream: TextIO, start: str, text: str, style: str) -> None:
+    """Print plain text; `start` alone is styled where there is one."""
+    if not stream.isatty():
+        stream.write(f"{start}{_visible(text)}\n")
+        return
+    line = Text(start, style) + Text(_visible(text), "" if start else style)
+    Console(file=stream).print(line, soft_wrap=True)
+
+
+def _visible(text: str) -> str:
+    """Escape control characters, so that no name in a message acts on the terminal."""
+    return _CONTROL.sub(lambda match: f"\\x{ord(match[0]):02x}", text)

@@ -1,0 +1,83 @@
+"""From what went wrong to one message and an exit code."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+import traceback
+import warnings
+from collections.abc import Iterator
+from typing import TextIO
+
+import typer
+
+from pne_sym.cli.console import print_error, print_warning
+from pne_sym.writer import OutputError
+
+DIFFERENT = 1
+INPUT_AT_FAULT = 2
+INTERNAL_ERROR = 3
+INTERRUPTED = 130
+
+
+@contextlib.contextmanager
+def told(*, debug: bool) -> Iterator[None]:
+    """Tell warnings and errors in one message each, and leave with the right code.
+
+    Args:
+        debug: show the traceback of an internal error.
+
+    Raises:
+        typer.Exit: with the exit code, for any error.
+    """
+    from pne_sym.generation import InputError  # noqa: PLC0415
+    from pne_sym.model.errors import SpecError, SpecWarning  # noqa: PLC0415
+
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("always", SpecWarning)
+            warnings.showwarning = _show_warning
+            yield
+            sys.stdout.flush()
+    except typer.Exit:
+        raise
+    except (InputError, SpecError, OutputError) as error:
+        print_error(str(error))
+        raise typer.Exit(INPUT_AT_FAULT) from error
+    except KeyboardInterrupt as error:
+        print_error("interrupted")
+        raise typer.Exit(INTERRUPTED) from error
+    except BrokenPipeError as error:
+        # Whoever read the output has seen enough, and nobody is left to tell.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        raise typer.Exit(0) from error
+    except Exception as error:
+        _tell_internal_error(error, debug=debug)
+        raise typer.Exit(INTERNAL_ERROR) from error
+
+
+def _tell_internal_error(error: Exception, *, debug: bool) -> None:
+    if debug:
+        traceback.print_exception(error)
+    summary = f"{type(error).__name__}: {error}".splitlines()[0]
+    print_error(f"internal error: {summary}")
+    if not debug:
+        sys.stderr.write("Run it again with --debug for the traceback, and please report it.\n")
+
+
+def _show_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    file: TextIO | None = None,
+    line: str | None = None,
+) -> None:
+    """Print a warning in one line; one that is not about the input with its class."""
+    from pne_sym.model.errors import SpecWarning  # noqa: PLC0415
+
+    del filename, lineno, file, line
+    print_warning(
+        f"{message}" if issubclass(category, SpecWarning) else f"{category.__name__}: {message}"
+    )

@@ -1,0 +1,189 @@
+"""What `pne-gen` does, as functions: find a manipulator, generate it, check it.
+
+>>> from pne_sym.generation import check, generate
+>>> generate("stewart", "generated")  # doctest: +SKIP
+PosixPath('generated/stewart')
+>>> check("stewart", "generated")  # doctest: +SKIP
+[]
+"""
+
+from __future__ import annotations
+
+import difflib
+import multiprocessing
+import os
+import signal
+import traceback
+import warnings
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pne_sym import comparison, writer
+
+if TYPE_CHECKING:
+    from pne_sym.model.manipulator import Manipulator
+
+# The compiler is imported inside the functions: it brings SymPy, and a name
+# that is misspelt should be refused before that.
+
+
+class InputError(ValueError):
+    """The name or the path given is at fault; the message is for people."""
+
+
+@dataclass(frozen=True)
+class Compiled:
+    """A manipulator and what is generated for it.
+
+    Attributes:
+        manipulator: the manipulator.
+        files: file name in the model's folder -> text.
+    """
+
+    manipulator: Manipulator
+    files: dict[str, str]
+
+
+def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
+    """Return the manipulator that a name, a spec file or an object stands for.
+
+    A text with a dot or a folder separator is the path of a spec file, any
+    other a name in the catalogue; a manipulator built in code stands for itself.
+
+    Raises:
+        InputError: no such model or file.
+        SpecError: the spec file is at fault.
+    """
+    from pne_sym import manipulators  # noqa: PLC0415
+    from pne_sym.model.reader import read_spec  # noqa: PLC0415
+
+    if not isinstance(source, str | os.PathLike):
+        return source
+    text = os.fspath(source)
+    if isinstance(source, str) and not _is_path(text):
+        if text not in manipulators.names():
+            raise InputError(_unknown_model(text, manipulators.names()))
+        return manipulators.load(text)
+    try:
+        return read_spec(Path(text))
+    except OSError as error:
+        raise InputError(f"cannot read {text}: {error.strerror or error}") from error
+
+
+def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLike[str]) -> Path:
+    """Generate a manipulator's folder below `out`, replacing it as a whole.
+
+    Returns:
+        The model's folder.
+
+    Raises:
+        InputError, SpecError: the source is at fault.
+        OutputError: the folder cannot be written.
+    """
+    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+
+    manipulator = find(source)
+    return writer.write_model(Path(out), manipulator.name, compile_model(manipulator))
+
+
+def check(
+    source: str | os.PathLike[str] | Manipulator, out: str | os.PathLike[str]
+) -> list[comparison.Difference]:
+    """Compare a manipulator's folder below `out` with what would be generated.
+
+    Returns:
+        The differences; none if the folder is up to date.
+
+    Raises:
+        InputError, SpecError: the source is at fault.
+        OutputError: the folder cannot be read.
+    """
+    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+
+    manipulator = find(source)
+    return comparison.check_model(Path(out), manipulator.name, compile_model(manipulator))
+
+
+def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator[Compiled]:
+    """Compile manipulators, in their order, in up to `jobs` processes at once.
+
+    Raises:
+        InputError, SpecError: a manipulator is outside the method.
+    """
+    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+
+    todo = tuple(manipulators)
+    jobs = min(jobs, len(todo))
+    if jobs <= 1:
+        yield from (Compiled(item, compile_model(item)) for item in todo)
+        return
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=_ignore_interrupts)
+    try:
+        for outcome in pool.map(_compile_in_worker, todo):
+            yield outcome.result()
+    except BaseException:
+        # Nobody waits for the rest: the workers only compute, they write nothing.
+        for process in multiprocessing.active_children():
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+@dataclass(frozen=True)
+class _Outcome:
+    """What a worker process found, in a form that any error survives."""
+
+    compiled: Compiled | None = None
+    warnings: tuple[tuple[str, type[Warning]], ...] = ()
+    input_error: str | None = None
+    internal_error: str | None = None
+
+    def result(self) -> Compiled:
+        for message, category in self.warnings:
+            warnings.warn(message, category, stacklevel=2)
+        if self.input_error is not None:
+            raise InputError(self.input_error)
+        if self.compiled is None:
+            raise RuntimeError(f"a worker process failed\n{self.internal_error}")
+        return self.compiled
+
+
+def _compile_in_worker(manipulator: Manipulator) -> _Outcome:
+    from pne_sym.model.errors import SpecError  # noqa: PLC0415
+    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            compiled = Compiled(manipulator, compile_model(manipulator))
+        except SpecError as error:
+            return _Outcome(input_error=str(error))
+        except Exception:  # noqa: BLE001 - told by the parent
+            return _Outcome(internal_error=traceback.format_exc())
+    return _Outcome(compiled, tuple((str(each.message), each.category) for each in caught))
+
+
+def _ignore_interrupts() -> None:
+    """Leave Ctrl-C to the parent process, which ends the workers."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _is_path(text: str) -> bool:
+    return "." in text or "/" in text or os.sep in text
+
+
+def _unknown_model(name: str, known: tuple[str, ...]) -> str:
+    near = difflib.get_close_matches(name.lower(), known, n=3)
+    if near:
+        hint = f"did you mean {' or '.join(near)}?"
+    else:
+        hint = f"the catalogue has: {', '.join(known)}"
+    files = [suffix for suffix in (".toml", ".json") if Path(name + suffix).is_file()]
+    if files:
+        hint = f"did you mean the file {name}{files[0]}?"
+    return f"unknown model {name!r}; {hint}"
