@@ -1,0 +1,1 @@
+"""Tests of pne_sym."""

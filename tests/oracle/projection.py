@@ -1,0 +1,420 @@
+"""Dynamics from poses alone: exact time derivatives, then d'Alembert's principle.
+
+The only mechanics here is the pose of each body as a function of the joint displacements
+and of the platform's coordinates.  Velocities, accelerations and partial velocities come
+from pushing truncated Taylor numbers of time through these functions, and the generalised
+inertia forces are
+
+    P_k = sum over bodies of  m (a - g) . dc/dx_k + (I alpha + omega x I omega) . dtheta/dx_k.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from pne_sym.model.manipulator import Leg, Manipulator
+from tests.oracle.bodies import (
+    Bodies,
+    LinkMotion,
+    bodies_of,
+    inertia_matrix,
+    kinetic_energy,
+    motion_of,
+    only_body,
+    potential_energy,
+    virtual_forces,
+)
+from tests.oracle.chain import chain_poses
+from tests.oracle.closure import OracleError, closure_error, closure_residual, leg_closure
+from tests.oracle.coordinates import (
+    Pose,
+    actuated_indices,
+    joint_slices,
+    passive_extra_rows,
+    platform_motion,
+    platform_rotation,
+    task_size,
+    twist_basis,
+)
+from tests.oracle.jets import Array, Jet
+
+RANK_TOLERANCE = 1e-9
+"""Singular values below this fraction of the largest count as zero."""
+
+
+@dataclass(frozen=True)
+class LegResult:
+    """One leg: m joints, nc closure conditions, k of them left out by its freedoms.
+
+    Attributes:
+        motion: of its m links, at the given A.
+        jacobian: (nc, m) rates of the closure conditions by joint rate; for a spherical
+            platform joint the columns are the vectors v_j (base axes).
+        rates: (m, nv) joint rates by V: qd = rates V.
+        joint_forces: (m,) inertia-minus-gravity force of the distal links along each
+            freedom at the given A (the method's Gamma_j), N or N m.
+        joint_inertia: (m, m) inertia matrix of the chain in its joint rates.
+        reaction: (6,) force and moment of the leg on the platform at the platform joint
+            (base axes, moment about the platform point), at tau, lam and A.
+        constraint_wrenches: (k, 6) force and moment at the platform joint per unit lambda.
+    """
+
+    motion: LinkMotion
+    jacobian: Array
+    rates: Array
+    joint_forces: Array
+    joint_inertia: Array
+    reaction: Array
+    constraint_wrenches: Array
+
+
+@dataclass(frozen=True)
+class Result:
+    """Everything about one state.  Flat orders as in the description: legs, then joints.
+
+    nv velocities (platform, then extra), nj joints, nu driven joints, nc multipliers.
+
+    Attributes:
+        M: (nv, nv) inertia matrix.
+        Z: (nv,) velocity terms minus gravity.
+        H: (nv, nu) of the driven joints.
+        Hk: (nv, nc) of the multipliers.  Sign, and for several multipliers of one leg the
+            basis, are arbitrary.
+        constraint_bias: (nc,) with Hk^T A + constraint_bias = 0.
+        qd: (nj,) joint rates.
+        qdd: (nj,) joint accelerations at A.
+        tau: (nu,) driving forces for A and the wrench; least norm where not unique.  Rows
+            of extra coordinates that are not driven take no part.
+        lam: (nc,) multipliers that go with tau.
+        tau_residual: (nv,) what tau and lam leave of M A + Z - W; zero for a consistent A.
+        kinetic: J.
+        potential: J, zero at the base origin.
+        inertia_forces: (nv,) the sums P_k at A; equal to M A + Z for an admissible A.
+        closure: largest closure residual of the given q (m, or sines of angles).
+        legs: per leg.
+        platform: motion of the platform (no leading axis).
+    """
+
+    M: Array
+    Z: Array
+    H: Array
+    Hk: Array
+    constraint_bias: Array
+    qd: Array
+    qdd: Array
+    tau: Array
+    lam: Array
+    tau_residual: Array
+    kinetic: float
+    potential: float
+    inertia_forces: Array
+    closure: float
+    legs: tuple[LegResult, ...]
+    platform: LinkMotion
+
+
+@dataclass(frozen=True)
+class _LegKinematics:
+    """First-order kinematics of a leg with nc closure conditions; see `LegResult`.
+
+    `demand` (nc, nv): rates of the conditions by V, joints without extra ones at rest.
+    `wrench_map` (6, nc): from the conditions' multipliers to the wrench on the platform at
+    the platform joint.  `multipliers` (nc, k): per unit lambda.
+    """
+
+    leg: Leg
+    q: Array
+    free: list[int]
+    jacobian: Array
+    demand: Array
+    rates: Array
+    wrench_map: Array
+    multipliers: Array
+    bodies: Bodies
+
+
+@dataclass(frozen=True)
+class _Motion:
+    """The whole mechanism at one acceleration; `remainders`: see `_joint_acceleration`."""
+
+    qd: Array
+    qdd: Array
+    links: list[LinkMotion]
+    platform: LinkMotion
+    forces: Array
+    remainders: list[Array]
+    kinetic: float
+    potential: float
+
+
+def project(
+    manipulator: Manipulator,
+    X: Array,
+    q: Array,
+    V: Array,
+    A: Array | None = None,
+    wrench: Array | None = None,
+) -> Result:
+    """Evaluate the dynamics at a closed state.
+
+    Args:
+        manipulator: mechanism.
+        X: (nq,) pose and extra coordinates.
+        q: (nj,) displacements that close the loops at X.
+        V: (nv,) velocity.
+        A: (nv,) acceleration, default zero.
+        wrench: (nw,) external force and moment about the platform origin, default none.
+
+    Returns:
+        The matrices and all derived quantities.
+
+    Raises:
+        OracleError: a leg is singular or has freedoms that X and V do not determine.
+    """
+    X, q, V = (np.asarray(array, dtype=float) for array in (X, q, V))
+    A = np.zeros_like(V) if A is None else np.asarray(A, dtype=float)
+    legs = [
+        _leg_kinematics(manipulator, number, X, q[where])
+        for number, where in enumerate(joint_slices(manipulator))
+    ]
+    platform = _platform_bodies(manipulator, X, V.size)
+    still = _evaluate(manipulator, legs, platform, X, V, np.zeros_like(V))
+    moving = _evaluate(manipulator, legs, platform, X, V, A)
+    H = np.vstack([leg.rates for leg in legs]).T[:, actuated_indices(manipulator)]
+    Hk = np.hstack([-leg.demand.T @ leg.multipliers for leg in legs])
+    load = np.zeros_like(V)
+    if wrench is not None:
+        load[: task_size(manipulator.space)] = wrench
+    tau, lam, residual = _drives(manipulator, H, Hk, moving.forces - load)
+    bodies = [leg.bodies.by(leg.rates) for leg in legs]
+    return Result(
+        M=np.sum([inertia_matrix(group) for group in [*bodies, platform]], axis=0),
+        Z=still.forces,
+        H=H,
+        Hk=Hk,
+        constraint_bias=-np.concatenate(
+            [leg.multipliers.T @ rest for leg, rest in zip(legs, still.remainders, strict=True)]
+        ),
+        qd=moving.qd,
+        qdd=moving.qdd,
+        tau=tau,
+        lam=lam,
+        tau_residual=residual,
+        kinetic=moving.kinetic,
+        potential=moving.potential,
+        inertia_forces=moving.forces,
+        closure=closure_error(manipulator, X, q),
+        legs=_leg_results(manipulator, legs, moving, tau, lam),
+        platform=moving.platform,
+    )
+
+
+def complete_acceleration(
+    manipulator: Manipulator,
+    X: Array,
+    q: Array,
+    V: Array,
+    A: Array,
+    wrench: Array | None = None,
+) -> Array:
+    """Fill the entries of A that belong to extra coordinates without a drive.
+
+    They follow from their own rows of M A + Z = H tau + W with the rest of A as given.
+    Where H does not vanish in these rows, tau is the one that the other rows demand.
+
+    Returns:
+        (nv,) acceleration.
+    """
+    rows = passive_extra_rows(manipulator)
+    if not rows:
+        return A
+    state = project(manipulator, X, q, V)
+    load = np.zeros_like(state.Z)
+    if wrench is not None:
+        load[: task_size(manipulator.space)] = wrench
+    others = [row for row in range(A.size) if row not in rows]
+    drive = np.hstack([state.H, state.Hk])
+    gain = drive[rows] @ np.linalg.pinv(drive[others])
+    effective = state.M[rows] - gain @ state.M[others]
+    bias = state.Z[rows] - gain @ (state.Z - load)[others]
+    result = np.array(A, dtype=float)
+    result[rows] = 0.0
+    result[rows] = -np.linalg.solve(effective[:, rows], effective @ result + bias)
+    return result
+
+
+def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -> _LegKinematics:
+    """Rates of a leg's joints by V, and what its freedoms leave to the platform."""
+    leg = manipulator.legs[number]
+    closure = leg_closure(manipulator, leg, X, q)
+    free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
+    left, values, _ = np.linalg.svd(closure.joints[:, free])
+    if len(free) > left.shape[0] or values.min() < RANK_TOLERANCE * values.max():
+        raise OracleError(f"leg {number} is singular or has undetermined freedoms")
+    rates = _extra_selection(manipulator, number)
+    task, total = task_size(manipulator.space), rates.shape[1]
+    demand = closure.platform @ twist_basis(manipulator.space) @ np.eye(task, total)
+    demand += closure.joints @ rates
+    # With fewer freedoms than conditions the pseudo-inverse takes the part of the motion
+    # along the freedoms, also for velocities that are not admissible.
+    rates[free] = -np.linalg.pinv(closure.joints[:, free]) @ demand
+    wrench_map = -_at_joint(manipulator, leg, X) @ closure.platform.T
+    null_space = left[:, len(free) :]
+    unit_rates = Jet(np.broadcast_to(q, (q.size, q.size)), np.eye(q.size), np.zeros((q.size,) * 2))
+    return _LegKinematics(
+        leg=leg,
+        q=q,
+        free=free,
+        jacobian=closure.joints,
+        demand=demand,
+        rates=rates,
+        wrench_map=wrench_map,
+        multipliers=_unit_multipliers(null_space, demand, wrench_map),
+        bodies=bodies_of([joint.link for joint in leg.joints], chain_poses(leg, unit_rates)),
+    )
+
+
+def _extra_selection(manipulator: Manipulator, number: int) -> Array:
+    """(m, nv): picks the rates of the leg's extra joints from V, zero for all others."""
+    task = task_size(manipulator.space)
+    counts = [sum(joint.extra for joint in leg.joints) for leg in manipulator.legs]
+    column = task + sum(counts[:number])
+    joints = manipulator.legs[number].joints
+    selection = np.zeros((len(joints), task + sum(counts)))
+    for row, joint in enumerate(joints):
+        if joint.extra:
+            selection[row, column] = 1.0
+            column += 1
+    return selection
+
+
+def _at_joint(manipulator: Manipulator, leg: Leg, X: Array) -> Array:
+    """(6, 6): wrench about the platform origin to wrench about the platform joint."""
+    arm = platform_rotation(manipulator, X) @ np.array(leg.platform_point, dtype=float)
+    shift = np.eye(6)
+    shift[3:, :3] = -np.cross(arm, np.eye(3), axisb=0).T
+    return shift
+
+
+def _unit_multipliers(null_space: Array, demand: Array, wrench_map: Array) -> Array:
+    """Multipliers (nc, k) of the closure conditions per unit lambda.
+
+    Lambda is a force where it transmits one (unit force part), else a moment.  Conditions
+    that no coordinate can violate, such as rotations that the space locks, drop out.
+    """
+    left, values, _ = np.linalg.svd(null_space.T @ demand)
+    multipliers = null_space
+    if values.size < null_space.shape[1] or (values < RANK_TOLERANCE).any():
+        multipliers = null_space @ left[:, : int((values > RANK_TOLERANCE).sum())]
+    wrenches = wrench_map @ multipliers
+    force = np.linalg.norm(wrenches[:3], axis=0)
+    moment = np.linalg.norm(wrenches[3:], axis=0)
+    units: Array = np.where(force > RANK_TOLERANCE * moment, force, moment)
+    return multipliers / units
+
+
+def _platform_bodies(manipulator: Manipulator, X: Array, nv: int) -> Bodies:
+    """The platform's partial velocities by the entries of V."""
+    twists = (twist_basis(manipulator.space) @ np.eye(task_size(manipulator.space), nv)).T
+    pose = platform_motion(manipulator, X, twists, np.zeros_like(twists))
+    return bodies_of([manipulator.platform], [pose])
+
+
+def _evaluate(
+    manipulator: Manipulator,
+    legs: list[_LegKinematics],
+    platform: Bodies,
+    X: Array,
+    V: Array,
+    A: Array,
+) -> _Motion:
+    """Accelerations of all bodies and the generalised inertia-minus-gravity forces."""
+    gravity = np.array(manipulator.gravity, dtype=float)
+    basis = twist_basis(manipulator.space) @ np.eye(task_size(manipulator.space), V.size)
+    pose = platform_motion(manipulator, X, basis @ V, basis @ A)
+    qd, qdd, links, remainders = [], [], [], []
+    for leg in legs:
+        rate = leg.rates @ V
+        acceleration, remainder = _joint_acceleration(manipulator, leg, pose, rate, A)
+        poses = chain_poses(leg.leg, Jet(leg.q, rate, acceleration))
+        links.append(motion_of([joint.link for joint in leg.leg.joints], poses))
+        qd.append(rate)
+        qdd.append(acceleration)
+        remainders.append(remainder)
+    carried = motion_of([manipulator.platform], [pose])
+    bodies = [leg.bodies.by(leg.rates) for leg in legs]
+    pairs = list(zip([*bodies, platform], [*links, carried], strict=True))
+    return _Motion(
+        qd=np.concatenate(qd),
+        qdd=np.concatenate(qdd),
+        links=links,
+        platform=only_body(carried),
+        forces=np.sum([virtual_forces(*pair, gravity) for pair in pairs], axis=0),
+        remainders=remainders,
+        kinetic=sum(kinetic_energy(*pair) for pair in pairs),
+        potential=sum(potential_energy(*pair, gravity) for pair in pairs),
+    )
+
+
+def _joint_acceleration(
+    manipulator: Manipulator, leg: _LegKinematics, platform: Pose, rate: Array, A: Array
+) -> tuple[Array, Array]:
+    """Joint accelerations (m,), and the closure's second derivative that they leave (nc,)."""
+    # Rows of `rates` that belong to extra joints only select their entry of A.
+    acceleration = np.where([joint.extra for joint in leg.leg.joints], leg.rates @ A, 0.0)
+
+    def second_derivative() -> Array:
+        last_link = chain_poses(leg.leg, Jet(leg.q, rate, acceleration))[-1]
+        return closure_residual(manipulator.space, leg.leg, last_link, platform).second
+
+    acceleration[leg.free] -= np.linalg.pinv(leg.jacobian[:, leg.free]) @ second_derivative()
+    return acceleration, second_derivative()
+
+
+def _drives(
+    manipulator: Manipulator, H: Array, Hk: Array, demand: Array
+) -> tuple[Array, Array, Array]:
+    """tau, lambda and the remainder of H tau + Hk lambda = demand; least norm of tau."""
+    passive = passive_extra_rows(manipulator)
+    rows = [row for row in range(demand.size) if row not in passive]
+    # Lambda costs nothing: tau is fixed by the directions that constraints leave free.
+    left, values, _ = np.linalg.svd(Hk[rows])
+    rank = int((values > RANK_TOLERANCE * values.max(initial=1e-300)).sum())
+    free = left[:, rank:]
+    tau = np.linalg.pinv(free.T @ H[rows], rcond=RANK_TOLERANCE) @ (free.T @ demand[rows])
+    lam = np.linalg.pinv(Hk[rows], rcond=RANK_TOLERANCE) @ (demand[rows] - H[rows] @ tau)
+    return tau, lam, demand - H @ tau - Hk @ lam
+
+
+def _leg_results(
+    manipulator: Manipulator,
+    legs: list[_LegKinematics],
+    moving: _Motion,
+    tau: Array,
+    lam: Array,
+) -> tuple[LegResult, ...]:
+    gravity = np.array(manipulator.gravity, dtype=float)
+    drives = np.zeros(moving.qd.size)
+    drives[actuated_indices(manipulator)] = tau
+    results, first = [], 0
+    for leg, motion, where in zip(legs, moving.links, joint_slices(manipulator), strict=True):
+        own = slice(first, first + leg.multipliers.shape[1])
+        first = own.stop
+        forces = virtual_forces(leg.bodies, motion, gravity)
+        # Virtual power of joint j: reaction . v_j = tau_j - Gamma_j.
+        power = (drives[where] - forces)[leg.free]
+        reaction = np.linalg.pinv(leg.jacobian[:, leg.free].T) @ power
+        results.append(
+            LegResult(
+                motion=motion,
+                jacobian=leg.jacobian,
+                rates=leg.rates,
+                joint_forces=forces,
+                joint_inertia=inertia_matrix(leg.bodies),
+                reaction=leg.wrench_map @ (reaction + leg.multipliers @ lam[own]),
+                constraint_wrenches=(leg.wrench_map @ leg.multipliers).T,
+            )
+        )
+    return tuple(results)
