@@ -1,0 +1,119 @@
+# All that users, pre-commit and CI call.  `make help` lists the targets.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+MAKEFLAGS += --no-print-directory
+
+# The interpreter that makes the environment: the first of these that is at least Python 3.11.
+PYTHON ?= $(shell for python in python3 python3.13 python3.12 python3.11; do \
+  "$$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null \
+  && { echo "$$python"; break; }; done)
+VENV ?= .venv
+BIN := $(VENV)/bin
+KATEX := tests/tools/katex
+DOCUMENTS = $(wildcard README.md docs/*.md generated/*/*.md)
+PYTEST_ARGS ?=
+
+# --- for users ----------------------------------------------------------------
+
+.PHONY: help
+help: ## List the targets
+	@awk -F ':.*## ' '/^[a-z][a-z-]*:.*## / {printf "  make %-16s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+.PHONY: demo
+demo: $(VENV)/core.stamp ## Generate the Stewart platform's model, then show it at work
+	$(BIN)/pne-gen stewart --out generated/
+	$(BIN)/python bench/demo.py
+
+.PHONY: test
+test: $(VENV)/test.stamp ## Run all tests
+	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+.PHONY: bench
+bench: $(VENV)/core.stamp ## Measure the generated code and the generator
+	$(BIN)/python bench/bench.py
+
+.PHONY: generate
+generate: $(VENV)/core.stamp ## Write generated/: the whole catalogue
+	$(BIN)/pne-gen all --out generated/
+
+# --- checks: what CI runs -----------------------------------------------------
+
+.PHONY: check
+check: test check-rest ## Run all that CI runs
+
+.PHONY: check-rest
+check-rest: check-format check-lint check-types check-layers check-generated check-c check-math wheel-test ## Run all of check but the tests
+	@echo "check-rest: passed, but for what is reported as NOT RUN"
+
+.PHONY: check-format
+check-format: $(VENV)/dev.stamp ## Is the code formatted (make format does it)?
+	$(BIN)/ruff format --check .
+
+.PHONY: check-lint
+check-lint: $(VENV)/dev.stamp ## Lint
+	$(BIN)/ruff check .
+
+.PHONY: check-types
+check-types: $(VENV)/dev.stamp ## Check the types, strictly
+	$(BIN)/mypy
+
+.PHONY: check-layers
+check-layers: $(VENV)/dev.stamp ## Check which layer imports which
+	$(BIN)/lint-imports
+
+.PHONY: check-generated
+check-generated: $(VENV)/core.stamp ## Is generated/ what would be generated (make generate does it)?
+	$(BIN)/pne-gen check --out generated/
+
+.PHONY: check-c
+check-c: ## Compile the generated C with every warning on: gcc, clang, double, float, C++
+	$(or $(wildcard $(BIN)/python),$(PYTHON)) tests/tools/compile_c.py generated
+
+.PHONY: check-math
+check-math: ## Render every formula of the documents with KaTeX
+	@if command -v node npm >/dev/null; then $(MAKE) $(KATEX)/node_modules/installed.stamp \
+	  && node $(KATEX)/check.mjs $(DOCUMENTS); \
+	else tests/tools/not-run.sh "check-math: node and npm are not installed"; fi
+
+.PHONY: wheel-test
+wheel-test: $(VENV)/dev.stamp ## Build sdist and wheel, use the wheel from an empty environment
+	$(BIN)/python tests/tools/wheel.py
+
+.PHONY: format
+format: $(VENV)/dev.stamp ## Format the code and sort its imports
+	$(BIN)/ruff format .
+	$(BIN)/ruff check --fix --select I .
+
+# --- environment ----------------------------------------------------------------
+
+.PHONY: setup
+setup: $(VENV)/dev.stamp ## Create the development environment
+
+.PHONY: clean
+clean: ## Remove the environment, caches and build products
+	rm -rf $(VENV) build dist *.egg-info $(KATEX)/node_modules \
+	  .mypy_cache .pytest_cache .ruff_cache .import_linter_cache
+	find . -name __pycache__ -not -path './.git/*' -prune -exec rm -rf {} +
+
+$(BIN)/python:
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed; name it: make PYTHON=/path/to/python3" >&2; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+
+$(VENV)/core.stamp: pyproject.toml | $(BIN)/python
+	$(BIN)/python -m pip install --quiet --editable .
+	touch $@
+
+$(VENV)/test.stamp: $(VENV)/core.stamp
+	$(BIN)/python -m pip install --quiet --editable '.[test]'
+	touch $@
+
+$(VENV)/dev.stamp: $(VENV)/test.stamp
+	$(BIN)/python -m pip install --quiet --editable '.[test,dev]'
+	touch $@
+
+$(KATEX)/node_modules/installed.stamp: $(KATEX)/package.json $(KATEX)/package-lock.json
+	npm ci --prefix $(KATEX) --silent --no-audit --no-fund
+	touch $@
