@@ -23,7 +23,9 @@ from pne_sym.model.manipulator import (
 )
 
 Array = npt.NDArray[np.float64]
-System = Callable[[Array], tuple[Array, Array]]
+Residual = Callable[[Array], Array]
+Step = Callable[[Array], Array]
+Move = Callable[[Array, Array], Array]
 
 TWIST: dict[Space, tuple[int, ...]] = {
     Space.POINT: (0, 1),
@@ -34,7 +36,8 @@ TWIST: dict[Space, tuple[int, ...]] = {
 }
 """Components of the platform's twist (velocity, angular velocity) that are free."""
 
-MAX_ITERATIONS = 60
+MAX_ITERATIONS = 30
+_HALVINGS = 8
 _LARGEST_STEP = 0.3
 _SINGULAR = 1e-9
 
@@ -47,7 +50,7 @@ class Pose:
     R: Array
 
 
-def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:  # noqa: N803
+def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:
     """The pose that the platform coordinates state."""
     eye = np.eye(3)
     if space is Space.POINT:
@@ -61,7 +64,7 @@ def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:  
     return Pose(np.array(X[:3]), rotation_of_quaternion(X[3:7]))
 
 
-def displaced(space: Space, X: Array, step: Array) -> Array:  # noqa: N803
+def displaced(space: Space, X: Array, step: Array) -> Array:
     """Platform coordinates moved by a small twist (components as in `TWIST`)."""
     if space not in (Space.SPATIAL, Space.SPHERICAL):
         return X + step
@@ -134,29 +137,43 @@ def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
     return np.concatenate(gaps), np.vstack(by_q), np.vstack(by_twist)
 
 
-def solve(system: System, x: Array, move: Callable[[Array, Array], Array]) -> Array:
-    """Gauss-Newton with least-norm, bounded and halved steps; returns the best point.
+def solve(residual: Residual, step: Step, move: Move, x: Array) -> Array:
+    """Newton's method with bounded and halved steps; returns the best point.
 
     Args:
-        system: residual and Jacobian at a point.
-        x: first guess.
+        residual: at a point.
+        step: that would cancel the residual, to first order.
         move: the point reached from a point by a step.
+        x: first guess.
     """
-    residual, jacobian = system(x)
+    size = _largest(residual(x))
     for _ in range(MAX_ITERATIONS):
-        step: Array = -np.linalg.lstsq(jacobian, residual, rcond=_SINGULAR)[0].astype(float)
-        largest = float(np.abs(step).max(initial=0.0))
-        step *= min(1.0, _LARGEST_STEP / largest) if largest > 0.0 else 0.0
-        for _ in range(8):
-            trial = move(x, step)
-            trial_residual, trial_jacobian = system(trial)
-            if np.abs(trial_residual).max() < np.abs(residual).max():
+        direction = step(x)
+        direction *= min(1.0, _LARGEST_STEP / max(_largest(direction), _LARGEST_STEP))
+        for _ in range(_HALVINGS):
+            trial = move(x, direction)
+            trial_size = _largest(residual(trial))
+            if trial_size < size:
                 break
-            step *= 0.5
+            direction *= 0.5
         else:
-            break
-        x, residual, jacobian = trial, trial_residual, trial_jacobian
+            return x
+        x, size = trial, trial_size
     return x
+
+
+def least_norm(matrix: Array, vector: Array) -> Array:
+    """The least-norm least-squares solution of a small linear system."""
+    solution: Array = np.linalg.lstsq(matrix, vector, rcond=_SINGULAR)[0].astype(np.float64)
+    return solution
+
+
+def unreachable(matrix: Array) -> Array:
+    """An orthonormal basis (rows) of what the columns of a matrix cannot reach."""
+    u, s, _ = np.linalg.svd(matrix)
+    rank = int(np.sum(s > _SINGULAR * max(1.0, _largest(s))))
+    basis: Array = u[:, rank:].T
+    return basis
 
 
 def _chain(leg: Leg, q: Array) -> tuple[list[Array], Array, list[Array]]:
@@ -201,8 +218,9 @@ def _axis_conditions(leg: Leg) -> list[tuple[Vector3, Vector3, bool]]:
     return [(joint.axis_link, joint.axis_platform, joint.kind is PlatformJointKind.UNIVERSAL)]
 
 
+def _largest(values: Array) -> float:
+    return float(np.abs(values).max(initial=0.0))
+
+
 def _skew(a: Array) -> Array:
     return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
-
-
-__all__ = ["TWIST", "Pose", "displaced", "leg_gap", "pose_at", "solve"]

@@ -8,9 +8,12 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pne_sym.model.errors import SpecError, printable, show
+
+MAX_ELEMENTS = 4096
+"""Lists and tables beyond it are refused at once, before any work is done on them."""
 
 
 @dataclass(frozen=True)
@@ -48,17 +51,20 @@ class Entry:
         for name, entry in self.named():
             if name not in known:
                 raise self._unknown(name, known)
-            lower = fields.get(name)
-            mergeable = lower is not None and isinstance(lower.value, Mapping)
-            if mergeable and isinstance(entry.value, Mapping):
-                entry = Entry(self.source, entry.where, entry.value, below=lower)
-            fields[name] = entry
+            fields[name] = entry.over(fields.get(name))
         return Table(self, fields)
+
+    def over(self, lower: Entry | None) -> Entry:
+        """This entry, overriding a lower one: a table field by field, else as a whole."""
+        if lower and isinstance(lower.value, Mapping) and isinstance(self.value, Mapping):
+            return replace(self, below=lower)
+        return self
 
     def named(self) -> Iterator[tuple[str, Entry]]:
         """Fields of a table with free names; a JSON null counts as absent."""
         if not isinstance(self.value, Mapping):
             raise self.fault("a table")
+        self._check_size(len(self.value))
         for name, value in self.value.items():
             if value is not None:
                 where = _join(self.where, name)
@@ -68,10 +74,11 @@ class Entry:
         """The elements of a list.
 
         Raises:
-            SpecError: not a list.
+            SpecError: not a list, or an absurdly long one.
         """
         if not isinstance(self.value, list | tuple):
             raise self.fault("a list")
+        self._check_size(len(self.value))
         return [Entry(self.source, f"{self.where}[{i}]", v) for i, v in enumerate(self.value)]
 
     def text(self) -> str:
@@ -104,6 +111,10 @@ class Entry:
         if not isinstance(self.value, bool):
             raise self.fault("true or false")
         return self.value
+
+    def _check_size(self, size: int) -> None:
+        if size > MAX_ELEMENTS:
+            raise self.fault(f"at most {MAX_ELEMENTS} elements", problem=f"{size} elements")
 
     def _unknown(self, name: str, known: tuple[str, ...]) -> SpecError:
         problem = f"unknown field {show(name)}{nearest(name, known)}"

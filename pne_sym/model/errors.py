@@ -5,7 +5,14 @@ from __future__ import annotations
 from collections.abc import Mapping
 from reprlib import Repr
 
-_SHORT = Repr()
+
+class _ShortRepr(Repr):
+    def repr_int(self, x: int, level: int) -> str:
+        """An integer; Python refuses to print one of thousands of digits."""
+        return super().repr_int(x, level) if x.bit_length() < 1000 else "a huge integer"
+
+
+_SHORT = _ShortRepr()
 _SHORT.maxlist = _SHORT.maxtuple = 6
 _SHORT.maxstring = _SHORT.maxlong = _SHORT.maxother = 60
 _SHORT.maxlevel = 3

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 
 from pne_sym.model.errors import SpecError, printable
@@ -80,8 +81,9 @@ def parse(text: str, suffix: str, source: str) -> object:
 def _distinct(pairs: list[tuple[str, object]]) -> dict[str, object]:
     table = dict(pairs)
     if len(table) < len(pairs):
-        seen: set[str] = set()
-        twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
+        keys = [key for key, _ in pairs]
+        # Equal keys are neighbours once sorted.
+        twice = next(a for a, b in pairwise(sorted(keys)) if a == b)
         raise ValueError(f"field {twice[:40]!r} stands twice in one table")
     return table
 
@@ -93,9 +95,9 @@ def _depth_exceeds(data: object, limit: int) -> bool:
         inner: list[object] = []
         for value in level:
             if isinstance(value, dict):
-                inner.extend(value.values())
+                inner.extend(v for v in value.values() if isinstance(v, dict | list))
             elif isinstance(value, list):
-                inner.extend(value)
+                inner.extend(v for v in value if isinstance(v, dict | list))
         if not inner:
             return False
         level = inner

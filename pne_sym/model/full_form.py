@@ -23,7 +23,7 @@ def to_full_form(manipulator: Manipulator) -> Plain:
     form: Plain = {
         "name": m.name,
         "title": m.title,
-        "space": m.space.value,
+        "space": str(m.space),
         "gravity": list(m.gravity),
     }
     if m.fixed_centre is not None:
@@ -46,7 +46,7 @@ def _leg(leg: Leg) -> Plain:
 
 def _joint(joint: Joint) -> Plain:
     form: Plain = {
-        "kind": joint.kind.value,
+        "kind": str(joint.kind),
         "axis": list(joint.axis),
         "offset": list(joint.offset),
     }
@@ -60,7 +60,7 @@ def _joint(joint: Joint) -> Plain:
 
 
 def _platform_joint(joint: PlatformJoint) -> Plain:
-    form: Plain = {"kind": joint.kind.value, "offset": list(joint.offset)}
+    form: Plain = {"kind": str(joint.kind), "offset": list(joint.offset)}
     if joint.axis_link is not None:
         form["axis_link"] = list(joint.axis_link)
     if joint.axis_platform is not None:

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
-import numpy.typing as npt
 
-from pne_sym.model.closure import TWIST, Array, displaced, leg_gap, pose_at, solve
+from pne_sym.model.closure import Array
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecWarning
+from pne_sym.model.loops import COORDINATES, Loops, all_closed, legs_closed
 from pne_sym.model.manipulator import Home, Joint, JointKind, Leg, Space, Vector3
 from pne_sym.model.values import EXACT, number
 
@@ -23,47 +21,6 @@ CLOSED = 1e-12
 """Gap to which a home is polished, relative to the size where that exceeds 1 m."""
 REACH = 0.5
 """A rough guess may be off by this much in any displacement (m or rad)."""
-
-COORDINATES: dict[Space, tuple[str, ...]] = {
-    Space.POINT: ("x", "y"),
-    Space.PLANAR: ("x", "y", "phi"),
-    Space.SPATIAL: ("x", "y", "z", "qx", "qy", "qz", "qw"),
-    Space.TRANSLATIONAL: ("x", "y", "z"),
-    Space.SPHERICAL: ("qx", "qy", "qz", "qw"),
-}
-
-
-@dataclass(frozen=True)
-class _Loops:
-    """The mechanism whose loops are to close, and which displacements are given by X."""
-
-    space: Space
-    legs: tuple[Leg, ...]
-    centre: Vector3 | None
-
-    @property
-    def size(self) -> int:
-        return len(COORDINATES[self.space])
-
-    @property
-    def joints(self) -> list[Joint]:
-        return [joint for leg in self.legs for joint in leg.joints]
-
-    @property
-    def extra(self) -> npt.NDArray[np.bool_]:
-        return np.array([joint.extra for joint in self.joints], dtype=bool)
-
-    def slices(self) -> list[slice]:
-        ends = np.cumsum([0, *(len(leg.joints) for leg in self.legs)]).tolist()
-        return [slice(a, b) for a, b in pairwise(ends)]
-
-    def gaps(self, X: Array, q: Array) -> list[float]:  # noqa: N803
-        """The largest gap of each leg."""
-        pose = pose_at(self.space, X.tolist(), self.centre)
-        gaps = (
-            leg_gap(leg, q[s], pose)[0] for leg, s in zip(self.legs, self.slices(), strict=True)
-        )
-        return [float(np.abs(gap).max()) for gap in gaps]
 
 
 def read_home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3 | None) -> Home:
@@ -76,24 +33,24 @@ def read_home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3
         SpecError: wrong lengths, no rotation, or loops that do not close nearby.
     """
     table = entry.table(FIELDS)
-    loops = _Loops(space, legs, centre)
+    loops = Loops(space, legs, centre)
     x_entry = table.require("X", "the platform coordinates, then the extra ones")
     q_entry = table.require("q", "the displacements of all joints, leg by leg")
-    X = _read_x(x_entry, loops)  # noqa: N806
+    X = _read_x(x_entry, loops)
     q = _read_q(q_entry, loops)
     _check_extra(x_entry, X[loops.size :], q[loops.extra])
-    X, q = _closed(entry, loops, np.array(X), np.array(q))  # noqa: N806
+    X, q = _closed(entry, loops, np.array(X), np.array(q))
     return Home(tuple(X.tolist()), tuple(q.tolist()))
 
 
-def _read_x(entry: Entry, loops: _Loops) -> Array:
+def _read_x(entry: Entry, loops: Loops) -> Array:
     names = COORDINATES[loops.space] + ("extra coordinate",) * int(loops.extra.sum())
     items = entry.items()
     if len(items) != len(names):
         raise entry.fault(
             f"{len(names)} numbers ({', '.join(names)})", problem=f"{len(items)} numbers"
         )
-    X = np.array([number(item) for item in items])  # noqa: N806
+    X = np.array([number(item) for item in items])
     if "qw" in names:
         start = names.index("qx")
         norm = math.hypot(*X[start : start + 4])
@@ -104,7 +61,7 @@ def _read_x(entry: Entry, loops: _Loops) -> Array:
     return X
 
 
-def _read_q(entry: Entry, loops: _Loops) -> Array:
+def _read_q(entry: Entry, loops: Loops) -> Array:
     """Displacements, flat or one list for each leg; revolute ones within (-pi, pi]."""
     joints = loops.joints
     items = entry.items()
@@ -118,7 +75,7 @@ def _read_q(entry: Entry, loops: _Loops) -> Array:
     return _principal(joints, [number(item) for item in items])
 
 
-def _flat(entry: Entry, items: list[Entry], loops: _Loops) -> list[Entry]:
+def _flat(entry: Entry, items: list[Entry], loops: Loops) -> list[Entry]:
     if len(items) != len(loops.legs):
         raise entry.fault(
             f"{len(loops.legs)} lists, one for each leg", problem=f"{len(items)} lists"
@@ -143,17 +100,17 @@ def _check_extra(entry: Entry, in_x: Array, in_q: Array) -> None:
             )
 
 
-def _closed(entry: Entry, loops: _Loops, X: Array, q: Array) -> tuple[Array, Array]:  # noqa: N803
+def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
     """X and q with the loops closed."""
     q[loops.extra] = X[loops.size :]
     gaps = loops.gaps(X, q)
     exact = CLOSED * max(1.0, float(np.abs(X).max()), float(np.abs(q).max()))
     if max(gaps) <= exact:
         return X, q
-    new_x, new_q = X, _legs_closed(loops, X, q)
+    new_x, new_q = X, legs_closed(loops, X, q)
     if max(loops.gaps(new_x, new_q)) > exact:
         # The legs restrict the platform: the pose itself has to give way.
-        new_x, new_q = _all_closed(loops, X, new_q)
+        new_x, new_q = all_closed(loops, X, new_q)
     moved = max(float(np.abs(new_x - X).max()), float(np.abs(new_q - q).max()))
     gap, worst = max(gaps), int(np.argmax(gaps))
     if max(loops.gaps(new_x, new_q)) > TOLERANCE or moved > REACH:
@@ -170,47 +127,6 @@ def _closed(entry: Entry, loops: _Loops, X: Array, q: Array) -> tuple[Array, Arr
             stacklevel=2,
         )
     return new_x, _principal(loops.joints, new_q.tolist())
-
-
-def _legs_closed(loops: _Loops, X: Array, q: Array) -> Array:  # noqa: N803
-    """Each leg closed by itself at the given pose, as far as it can."""
-    pose = pose_at(loops.space, X.tolist(), loops.centre)
-    result = q.copy()
-    for leg, s in zip(loops.legs, loops.slices(), strict=True):
-        free = ~loops.extra[s]
-
-        def system(
-            x: Array, leg: Leg = leg, free: npt.NDArray[np.bool_] = free
-        ) -> tuple[Array, Array]:
-            gap, by_q, _ = leg_gap(leg, x, pose)
-            return gap, by_q * free
-
-        result[s] = solve(system, q[s], lambda x, step: x + step)
-    return result
-
-
-def _all_closed(loops: _Loops, X: Array, q: Array) -> tuple[Array, Array]:  # noqa: N803
-    """All legs closed together by the least change of pose and displacements."""
-    size, twist, free = loops.size, TWIST[loops.space], ~loops.extra
-
-    def system(x: Array) -> tuple[Array, Array]:
-        pose = pose_at(loops.space, x[:size].tolist(), loops.centre)
-        gaps, rows = [], []
-        for leg, s in zip(loops.legs, loops.slices(), strict=True):
-            gap, by_q, by_twist = leg_gap(leg, x[size:][s], pose)
-            row = np.zeros((len(gap), len(twist) + len(q)))
-            row[:, : len(twist)] = by_twist[:, twist]
-            row[:, len(twist) :][:, s] = by_q * free[s]
-            gaps.append(gap)
-            rows.append(row)
-        return np.concatenate(gaps), np.vstack(rows)
-
-    def move(x: Array, step: Array) -> Array:
-        pose = displaced(loops.space, x[:size], step[: len(twist)])
-        return np.concatenate([pose, x[size:] + step[len(twist) :]])
-
-    x = solve(system, np.concatenate([X[:size], q]), move)
-    return np.concatenate([x[:size], X[size:]]), x[size:]
 
 
 def _principal(joints: list[Joint], q: list[float]) -> Array:

@@ -19,7 +19,7 @@ from pne_sym.model.values import ROUNDING, axis, flags, number, offset, rotation
 
 FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link")
 PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation")
-MAX_JOINTS = 16
+MAX_JOINTS = 12
 
 _SEQUENCES: dict[str, tuple[JointKind, ...]] = {
     "R": (JointKind.REVOLUTE,),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
+from dataclasses import replace
 
 from pne_sym.model.entry import Entry, Table, nearest
 from pne_sym.model.errors import SpecError, SpecWarning
@@ -22,7 +23,7 @@ from pne_sym.model.values import rotation, vector
 
 FIELDS = ("type", "base_point", "base_frame", "joints", "platform_joint", "platform_point")
 TYPE_FIELDS = ("joints", "platform_joint")
-MAX_LEGS = 256
+MAX_LEGS = 128
 
 _LegTypes = Mapping[str, Table]
 
@@ -83,7 +84,7 @@ def _shared(table: Table, types: _LegTypes, used: set[str]) -> Table | None:
         return None
     name = entry.text()
     if name not in types:
-        known = ", ".join(types) or "a table [leg_types.NAME] to be added"
+        known = ", ".join(list(types)[:10]) or "a table [leg_types.NAME] to be added"
         raise entry.fault(f"the name of a leg type: {known}{nearest(name, types)}")
     used.add(name)
     return types[name]
@@ -120,20 +121,18 @@ def _overridden(entries: list[Entry], own: Entry) -> list[Entry]:
                 "a joint of the leg type, counted from 0: " + ", ".join(numbers),
             )
         index = numbers[name]
-        result[index] = Entry(entry.source, entry.where, entry.value, below=entries[index])
+        result[index] = entry.over(entries[index])
     return result
 
 
 def _platform_joint(table: Table, shared: Table | None, *, plane: bool) -> PlatformJoint:
     own = table.get("platform_joint")
     common = shared.get("platform_joint") if shared else None
-    entry = own or common
+    if common and isinstance(common.value, str):
+        common = replace(common, value={"kind": common.value})
+    entry = own.over(common) if own else common
     if entry is None:
         return PlatformJoint(PlatformJointKind.REVOLUTE if plane else PlatformJointKind.SPHERICAL)
-    if own and common and isinstance(own.value, Mapping):
-        if isinstance(common.value, str):
-            common = Entry(common.source, common.where, {"kind": common.value})
-        entry = Entry(own.source, own.where, own.value, below=common)
     return read_platform_joint(entry, plane=plane)
 
 

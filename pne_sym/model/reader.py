@@ -32,7 +32,7 @@ FIELDS = (
 LONGEST_TITLE = 120
 STANDARD_GRAVITY = 9.81
 
-__all__ = ["from_mapping", "from_text", "read_spec", "to_full_form"]
+__all__ = ["checked", "from_mapping", "from_text", "read_spec", "to_full_form"]
 
 
 def read_spec(path: Path) -> Manipulator:
@@ -90,6 +90,15 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
         home=read_home(table.require("home", "a pose X and displacements q"), space, legs, centre),
         fixed_centre=centre,
     )
+
+
+def checked(manipulator: Manipulator) -> Manipulator:
+    """A manipulator built in Python, validated and normalised like one that is read.
+
+    Raises:
+        SpecError: a field is at fault.
+    """
+    return from_mapping(to_full_form(manipulator), f"Manipulator({manipulator.name!r})")
 
 
 def _title(table: Table, name: str) -> str:

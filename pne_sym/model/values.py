@@ -10,8 +10,7 @@ import math
 from collections.abc import Sequence
 
 from pne_sym.model.entry import Entry
-from pne_sym.model.errors import SpecError
-from pne_sym.model.manipulator import IDENTITY3, ZERO3, Matrix3, Vector3
+from pne_sym.model.manipulator import IDENTITY3, Matrix3, Vector3
 from pne_sym.model.rotation import is_rotation, orthonormalised, rotation_from_rpy
 
 SNAP = 1e-9
@@ -158,7 +157,7 @@ def flags(entry: Entry | None, count: int) -> tuple[bool, ...]:
     Raises:
         SpecError: another shape, or a single `true` for several freedoms.
     """
-    if entry is None or (entry.value is False):
+    if entry is None or entry.value is False:
         return (False,) * count
     if isinstance(entry.value, list | tuple):
         if len(entry.value) != count:
@@ -169,33 +168,9 @@ def flags(entry: Entry | None, count: int) -> tuple[bool, ...]:
     return (entry.flag(),)
 
 
-def fault_unless_small(entry: Entry, size: int, limit: int, what: str) -> None:
-    """Refuse a list that is longer than any sensible one.
-
-    Raises:
-        SpecError: more than `limit` elements.
-    """
-    if size > limit:
-        raise SpecError(entry.source, entry.where, f"{size} {what}", f"at most {limit}")
-
-
 def _snapped(x: Vector3) -> Vector3:
     return _vector3([0.0 if abs(c) < SNAP else c for c in x])
 
 
 def _vector3(x: Sequence[float]) -> Vector3:
     return (x[0], x[1], x[2])
-
-
-__all__ = [
-    "ZERO3",
-    "axis",
-    "flags",
-    "matrix",
-    "not_negative",
-    "number",
-    "numbers",
-    "offset",
-    "rotation",
-    "vector",
-]

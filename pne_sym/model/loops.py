@@ -1,0 +1,124 @@
+"""The closed loops of a mechanism: displacements, and if need be a pose, that close them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import numpy.typing as npt
+
+from pne_sym.model.closure import (
+    TWIST,
+    Array,
+    displaced,
+    least_norm,
+    leg_gap,
+    pose_at,
+    solve,
+    unreachable,
+)
+from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
+
+Flags = npt.NDArray[np.bool_]
+
+COORDINATES: dict[Space, tuple[str, ...]] = {
+    Space.POINT: ("x", "y"),
+    Space.PLANAR: ("x", "y", "phi"),
+    Space.SPATIAL: ("x", "y", "z", "qx", "qy", "qz", "qw"),
+    Space.TRANSLATIONAL: ("x", "y", "z"),
+    Space.SPHERICAL: ("qx", "qy", "qz", "qw"),
+}
+
+
+@dataclass(frozen=True)
+class Loops:
+    """The legs between base and platform, and which displacements the pose states.
+
+    Attributes:
+        space: the task space.
+        legs: of the mechanism.
+        centre: fixed centre of rotation, m (spherical only).
+    """
+
+    space: Space
+    legs: tuple[Leg, ...]
+    centre: Vector3 | None
+
+    @property
+    def size(self) -> int:
+        """How many platform coordinates there are."""
+        return len(COORDINATES[self.space])
+
+    @property
+    def joints(self) -> list[Joint]:
+        """All joints, in the order of q."""
+        return [joint for leg in self.legs for joint in leg.joints]
+
+    @property
+    def extra(self) -> Flags:
+        """Which displacements are coordinates of their own."""
+        return np.array([joint.extra for joint in self.joints], dtype=bool)
+
+    def slices(self) -> list[slice]:
+        """Where each leg's displacements stand in q."""
+        ends = np.cumsum([0, *(len(leg.joints) for leg in self.legs)]).tolist()
+        return [slice(a, b) for a, b in pairwise(ends)]
+
+    def gaps(self, X: Array, q: Array) -> list[float]:
+        """The largest gap of each leg."""
+        pose = pose_at(self.space, X.tolist(), self.centre)
+        gaps = (
+            leg_gap(leg, q[s], pose)[0] for leg, s in zip(self.legs, self.slices(), strict=True)
+        )
+        return [float(np.abs(gap).max()) for gap in gaps]
+
+
+def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
+    """Each leg closed by itself at the given pose, as far as it can."""
+    pose = pose_at(loops.space, X.tolist(), loops.centre)
+    result = q.copy()
+    for leg, s in zip(loops.legs, loops.slices(), strict=True):
+        free = ~loops.extra[s]
+
+        def residual(x: Array, leg: Leg = leg) -> Array:
+            return leg_gap(leg, x, pose)[0]
+
+        def step(x: Array, leg: Leg = leg, free: Flags = free) -> Array:
+            gap, by_q, _ = leg_gap(leg, x, pose)
+            return least_norm(by_q * free, -gap)
+
+        result[s] = solve(residual, step, np.add, q[s])
+    return result
+
+
+def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
+    """All legs closed together, moving the pose by what the legs cannot reach."""
+    size, twist, free = loops.size, TWIST[loops.space], ~loops.extra
+    slices = loops.slices()
+
+    def gaps(x: Array) -> list[tuple[Array, Array, Array]]:
+        pose = pose_at(loops.space, x[:size].tolist(), loops.centre)
+        pairs = zip(loops.legs, slices, strict=True)
+        found = [(leg_gap(leg, x[size:][s], pose), s) for leg, s in pairs]
+        return [(gap, by_q * free[s], by_twist[:, twist]) for (gap, by_q, by_twist), s in found]
+
+    def residual(x: Array) -> Array:
+        return np.concatenate([gap for gap, _, _ in gaps(x)])
+
+    def step(x: Array) -> Array:
+        legs = gaps(x)
+        out = [unreachable(by_q) for _, by_q, _ in legs]
+        platform = least_norm(
+            np.vstack([n @ by_twist for n, (_, _, by_twist) in zip(out, legs, strict=True)]),
+            -np.concatenate([n @ gap for n, (gap, _, _) in zip(out, legs, strict=True)]),
+        )
+        joints = [least_norm(by_q, -gap - by_twist @ platform) for gap, by_q, by_twist in legs]
+        return np.concatenate([platform, *joints])
+
+    def move(x: Array, step: Array) -> Array:
+        pose = displaced(loops.space, x[:size], step[: len(twist)])
+        return np.concatenate([pose, x[size:] + step[len(twist) :]])
+
+    x = solve(residual, step, move, np.concatenate([X[:size], q]))
+    return np.concatenate([x[:size], X[size:]]), x[size:]
