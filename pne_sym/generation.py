@@ -9,7 +9,6 @@ PosixPath('generated/stewart')
 
 from __future__ import annotations
 
-import difflib
 import multiprocessing
 import os
 import signal
@@ -31,7 +30,7 @@ if TYPE_CHECKING:
 
 
 class InputError(ValueError):
-    """The name or the path given is at fault; the message is for people."""
+    """What was asked for cannot be done; the message is one line for people."""
 
 
 @dataclass(frozen=True)
@@ -54,23 +53,17 @@ def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
     other a name in the catalogue; a manipulator built in code stands for itself.
 
     Raises:
-        InputError: no such model or file.
-        SpecError: the spec file is at fault.
+        SpecError: no such model (the message has the nearest names), or the
+            spec file is at fault.
     """
     from pne_sym import manipulators  # noqa: PLC0415
     from pne_sym.model.reader import read_spec  # noqa: PLC0415
 
     if not isinstance(source, str | os.PathLike):
         return source
-    text = os.fspath(source)
-    if isinstance(source, str) and not _is_path(text):
-        if text not in manipulators.names():
-            raise InputError(_unknown_model(text, manipulators.names()))
-        return manipulators.load(text)
-    try:
-        return read_spec(Path(text))
-    except OSError as error:
-        raise InputError(f"cannot read {text}: {error.strerror or error}") from error
+    if isinstance(source, str) and not _is_path(source):
+        return manipulators.load(source)
+    return read_spec(Path(source))
 
 
 def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLike[str]) -> Path:
@@ -80,7 +73,7 @@ def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLik
         The model's folder.
 
     Raises:
-        InputError, SpecError: the source is at fault.
+        SpecError: the source is at fault.
         OutputError: the folder cannot be written.
     """
     from pne_sym.pipeline import compile_model  # noqa: PLC0415
@@ -98,7 +91,7 @@ def check(
         The differences; none if the folder is up to date.
 
     Raises:
-        InputError, SpecError: the source is at fault.
+        SpecError: the source is at fault.
         OutputError: the folder cannot be read.
     """
     from pne_sym.pipeline import compile_model  # noqa: PLC0415
@@ -111,7 +104,7 @@ def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator
     """Compile manipulators, in their order, in up to `jobs` processes at once.
 
     Raises:
-        InputError, SpecError: a manipulator is outside the method.
+        SpecError, InputError: a manipulator is outside the method.
     """
     from pne_sym.pipeline import compile_model  # noqa: PLC0415
 
@@ -175,15 +168,3 @@ def _ignore_interrupts() -> None:
 
 def _is_path(text: str) -> bool:
     return "." in text or "/" in text or os.sep in text
-
-
-def _unknown_model(name: str, known: tuple[str, ...]) -> str:
-    near = difflib.get_close_matches(name.lower(), known, n=3)
-    if near:
-        hint = f"did you mean {' or '.join(near)}?"
-    else:
-        hint = f"the catalogue has: {', '.join(known)}"
-    files = [suffix for suffix in (".toml", ".json") if Path(name + suffix).is_file()]
-    if files:
-        hint = f"did you mean the file {name}{files[0]}?"
-    return f"unknown model {name!r}; {hint}"

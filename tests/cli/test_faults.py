@@ -1,0 +1,144 @@
+"""What is wrong with the input, in one message, and the exit code."""
+
+from __future__ import annotations
+
+import re
+import time
+from importlib.metadata import version
+from pathlib import Path
+
+import pytest
+
+from tests.cli.program import pne_gen, tree
+from tests.cli.test_generate import own_spec
+
+
+def assert_refused(done, *parts: str, code: int = 2) -> None:
+    """One line of error, with the parts given, nothing else, and the exit code."""
+    assert done.returncode == code, done.stderr
+    assert done.stdout == ""
+    assert done.stderr.count("\n") == 1
+    assert done.stderr.startswith("pne-gen: error: ")
+    for part in parts:
+        assert part in done.stderr
+
+
+def test_unknown_model_names_the_nearest(tmp_path: Path) -> None:
+    assert_refused(pne_gen("stewrt", "--out", tmp_path / "out"), "'stewrt'", "did you mean stewart")
+    assert not (tmp_path / "out").exists()
+
+
+def test_unknown_second_model_leaves_nothing_written(tmp_path: Path) -> None:
+    assert_refused(pne_gen("stewart", "zzz", "--out", tmp_path / "out"), "'zzz'")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("word", ["diff", "explain", "new", "draw"])
+def test_reserved_words_without_a_command_yet(word: str) -> None:
+    assert_refused(pne_gen(word, "stewart"), f"'{word}' is not available in this version")
+    assert not re.search(rf"^  {word}\b", pne_gen("--help").stdout, re.MULTILINE)
+
+
+def test_missing_spec_file(tmp_path: Path) -> None:
+    assert_refused(pne_gen("no_such.toml", cwd=tmp_path), "no_such.toml: no such file")
+    assert tree(tmp_path) == {}
+
+
+def test_bad_spec_file(tmp_path: Path) -> None:
+    (tmp_path / "bad.toml").write_text("name = ")
+    assert_refused(pne_gen("bad.toml", cwd=tmp_path), "bad.toml")
+
+
+def test_spec_with_an_unknown_field(tmp_path: Path) -> None:
+    path = own_spec(tmp_path)
+    path.write_text("gravitty = 1\n" + path.read_text())
+    assert_refused(pne_gen(path), "gravitty", "gravity")
+
+
+def test_a_manipulator_outside_the_method(tmp_path: Path) -> None:
+    assert_refused(pne_gen("stewart", "--out", tmp_path, fault="outside"), "outside the method")
+
+
+def test_two_sources_of_one_name(tmp_path: Path) -> None:
+    path = own_spec(tmp_path)
+    other = own_spec(tmp_path, "other")
+    other.write_text(path.read_text())
+    assert_refused(pne_gen(path, other, "--out", tmp_path / "out"), "both named 'my_robot'")
+
+
+def test_control_characters_of_a_name_do_not_reach_the_terminal(tmp_path: Path) -> None:
+    done = pne_gen("\x1b[31mred", "--out", tmp_path)
+    assert done.returncode == 2
+    assert "\x1b" not in done.stderr
+
+
+@pytest.mark.parametrize("below", ["", "/deeper", "/deeper/still"])
+def test_an_output_path_that_is_a_file(below: str, tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("mine")
+    done = pne_gen("stewart", "--out", f"{tmp_path}/file{below}")
+    assert_refused(done, f"cannot write {tmp_path}/file{below}", "is not a folder")
+    assert tree(tmp_path) == {"file": b"mine"}
+
+
+def test_a_folder_of_someone_else_is_not_replaced(tmp_path: Path) -> None:
+    (tmp_path / "stewart").mkdir()
+    (tmp_path / "stewart/thesis.tex").write_text("mine")
+    assert_refused(pne_gen("stewart", "--out", tmp_path), "refusing to replace")
+    assert tree(tmp_path) == {"stewart/thesis.tex": b"mine"}
+
+
+def test_an_internal_error_is_one_line_and_a_hint(tmp_path: Path) -> None:
+    done = pne_gen("stewart", "--out", tmp_path, fault="bug")
+    assert done.returncode == 3
+    error, hint = done.stderr.splitlines()
+    assert error == "pne-gen: error: internal error: RuntimeError: two lines"
+    assert "--debug" in hint
+    assert tree(tmp_path) == {}
+
+
+def test_debug_shows_the_traceback_of_an_internal_error(tmp_path: Path) -> None:
+    done = pne_gen("stewart", "--out", tmp_path, "--debug", fault="bug")
+    assert done.returncode == 3
+    assert "Traceback" in done.stderr
+
+
+def test_an_unknown_option(tmp_path: Path) -> None:
+    done = pne_gen("stewart", "--ouput", tmp_path)
+    assert done.returncode == 2
+    assert "No such option: --ouput" in done.stderr
+
+
+def test_no_model_at_all(tmp_path: Path) -> None:
+    done = pne_gen("--out", tmp_path)
+    assert done.returncode == 2
+    assert "NAME_OR_SPEC" in done.stderr
+
+
+def test_help_has_examples_and_exit_codes() -> None:
+    done = pne_gen("--help")
+    assert done.returncode == 0
+    assert "pne-gen stewart --out generated/" in done.stdout
+    assert "130 interrupted" in done.stdout
+
+
+@pytest.mark.parametrize("word", ["stewart", "all", "list", "check"])
+def test_every_command_has_help(word: str) -> None:
+    done = pne_gen(word, "--help")
+    assert done.returncode == 0
+    assert done.stdout.startswith("Usage: pne-gen ")
+
+
+def test_version_is_told_at_once() -> None:
+    begin = time.perf_counter()
+    done = pne_gen("--version", real=True)
+    assert done.stdout == f"pne-gen {version('pne-sym')}\n"
+    # 0.13 s where it was written; a machine under load may take several times that.
+    assert time.perf_counter() - begin < 2.0
+
+
+def test_version_and_help_need_no_sympy() -> None:
+    done = pne_gen("--version", real=True, PYTHONPROFILEIMPORTTIME="1")
+    assert done.returncode == 0
+    assert "typer" in done.stderr
+    assert "sympy" not in done.stderr
+    assert "pydantic_core" not in done.stderr

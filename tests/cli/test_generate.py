@@ -1,0 +1,136 @@
+"""`pne-gen NAME_OR_SPEC --out DIR` and `pne-gen all`, through the installed program."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import pne_sym.manipulators
+from tests.cli.program import PROGRAM, on_a_terminal, pne_gen, tree
+
+STEWART_SPEC = Path(pne_sym.manipulators.__file__).with_name("stewart.toml")
+
+
+def own_spec(folder: Path, name: str = "my_robot") -> Path:
+    """The catalogue's Stewart platform as a file of one's own."""
+    path = folder / f"{name}.toml"
+    path.write_text(STEWART_SPEC.read_text().replace('name = "stewart"', f'name = "{name}"'))
+    return path
+
+
+def test_writes_the_model_and_says_so(tmp_path: Path) -> None:
+    done = pne_gen("stewart", "--out", "generated", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert done.stdout.startswith("wrote generated/stewart: 4 files")
+    assert set(tree(tmp_path)) == {
+        "generated/__init__.py",
+        *(
+            f"generated/stewart/{file}"
+            for file in ("__init__.py", "stewart.c", "stewart.json", "stewart.py")
+        ),
+    }
+
+
+def test_the_written_package_imports(tmp_path: Path) -> None:
+    pne_gen("stewart", "--out", "generated", cwd=tmp_path)
+    subprocess.run(
+        [sys.executable, "-c", "from generated import stewart; assert stewart.version == 1"],
+        cwd=tmp_path,
+        check=True,
+    )
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("stewart", "--out", "DIR"),
+        ("--out", "DIR", "stewart"),
+        ("-q", "stewart", "-o", "DIR"),
+        ("--out=DIR", "stewart"),
+    ],
+)
+def test_options_may_stand_before_and_after(arguments: tuple[str, ...], tmp_path: Path) -> None:
+    done = pne_gen(*arguments, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "DIR/stewart/stewart.py").is_file()
+
+
+def test_several_models_and_files_at_once(tmp_path: Path) -> None:
+    done = pne_gen("stewart", own_spec(tmp_path), "--out", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out/stewart/stewart.py").is_file()
+    assert (tmp_path / "out/my_robot/my_robot.py").is_file()
+
+
+def test_all_writes_the_catalogue(tmp_path: Path) -> None:
+    done = pne_gen("all", "--out", tmp_path, "--jobs", "2")
+    assert done.returncode == 0, done.stderr
+    assert [line.split(":")[0] for line in done.stdout.splitlines()] == [
+        f"wrote {tmp_path / name}" for name in pne_sym.manipulators.names()
+    ]
+
+
+@pytest.mark.parametrize(
+    ("fault", "code", "told"),
+    [
+        ("warning", 0, "pne-gen: warning: stewart: unusual inertia\n"),
+        ("outside", 2, "outside the method\n"),
+        ("bug", 3, "internal error"),
+    ],
+)
+def test_what_a_worker_process_finds_is_told(
+    fault: str, code: int, told: str, tmp_path: Path
+) -> None:
+    done = pne_gen("all", "--out", tmp_path, "--jobs", "2", fault=fault)
+    assert done.returncode == code
+    assert told in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_quiet_says_nothing(tmp_path: Path) -> None:
+    done = pne_gen("stewart", "--out", tmp_path, "--quiet")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_a_second_run_writes_the_same_bytes(tmp_path: Path) -> None:
+    pne_gen("stewart", "--out", tmp_path / "a")
+    first = tree(tmp_path / "a")
+    pne_gen("stewart", "--out", tmp_path / "a")
+    assert tree(tmp_path / "a") == first
+
+
+def test_a_file_of_an_earlier_generation_disappears(tmp_path: Path) -> None:
+    pne_gen("stewart", "--out", tmp_path)
+    (tmp_path / "stewart/left_over.py").write_text("")
+    pne_gen("stewart", "--out", tmp_path)
+    assert not (tmp_path / "stewart/left_over.py").exists()
+
+
+def test_a_warning_is_one_line(tmp_path: Path) -> None:
+    done = pne_gen("stewart", "--out", tmp_path, fault="warning")
+    assert done.returncode == 0
+    assert done.stderr == "pne-gen: warning: stewart: unusual inertia\n"
+
+
+def test_progress_shows_on_a_terminal_and_leaves_the_result(tmp_path: Path) -> None:
+    code, shown = on_a_terminal("stewart", "--out", tmp_path)
+    assert code == 0
+    assert "\x1b[" in shown
+    assert f"wrote {tmp_path}/stewart" in shown
+
+
+def test_list_has_a_tab_between_name_and_title_when_piped() -> None:
+    done = pne_gen("list")
+    assert done.returncode == 0
+    rows = [line.split("\t") for line in done.stdout.splitlines()]
+    assert [name for name, _ in rows] == list(pne_sym.manipulators.names())
+    assert all(title for _, title in rows)
+
+
+def test_a_reader_that_leaves_early_is_no_error() -> None:
+    command = f"{PROGRAM} list | true; echo ${{PIPESTATUS[0]}}"
+    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
+    assert (done.stdout, done.stderr) == ("0\n", "")
