@@ -75,7 +75,7 @@ check-c: ## Compile the generated C with every warning on: gcc, clang, double, f
 .PHONY: check-math
 check-math: ## Render every formula of the documents with KaTeX
 	@if command -v node npm >/dev/null; then $(MAKE) $(KATEX)/node_modules/installed.stamp \
-	  && node $(KATEX)/check.mjs $(DOCUMENTS); \
+	  && node --test --test-reporter=spec $(KATEX)/check.test.mjs && node $(KATEX)/check.mjs $(DOCUMENTS); \
 	else tests/tools/not-run.sh "check-math: node and npm are not installed"; fi
 
 .PHONY: wheel-test
