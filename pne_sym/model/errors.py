@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from itertools import islice
 from reprlib import Repr
 
 
@@ -52,8 +53,8 @@ def printable(text: str, limit: int = 200) -> str:
 
 
 def show(value: object) -> str:
-    """A value as a short, printable piece of a message."""
+    """A value as a short, printable piece of a message; of a table only the field names."""
     if isinstance(value, Mapping):
-        fields = [printable(str(key), 20) for key in list(value)[:5]]
-        return "a table of " + ", ".join(fields) if fields else "an empty table"
+        fields = [printable(str(key), 20) for key in islice(value, 5)]
+        return "{" + ", ".join(fields) + (", ..." if len(value) > len(fields) else "") + "}"
     return printable(_SHORT.repr(value))

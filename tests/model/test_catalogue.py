@@ -1,0 +1,73 @@
+"""The catalogue holds the reference data, digit by digit, and finds its files."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from pne_sym import manipulators
+from pne_sym.model.errors import SpecError
+from pne_sym.model.reader import from_mapping, read_spec, to_full_form
+
+REFERENCE = Path(__file__).parents[1] / "data" / "reference_specs"
+NAMES = sorted(path.stem for path in REFERENCE.glob("*.json"))
+
+
+def reference(name: str) -> Any:
+    return json.loads((REFERENCE / f"{name}.json").read_text())
+
+
+def test_names() -> None:
+    assert list(manipulators.names()) == NAMES
+    assert len(NAMES) == 31
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_equals_the_reference(name: str) -> None:
+    found = manipulators.load(name)
+    expected = from_mapping(reference(name), "reference")
+    assert replace(found, title="") == replace(expected, title="")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_reading_changes_no_digit(name: str) -> None:
+    """Only structural zeros are snapped: all else stands as in the reference file."""
+    snapped = differences(to_full_form(manipulators.load(name)), reference(name))
+    snapped.pop(".title")
+    assert all(found == 0.0 and abs(given) < 1e-16 for found, given in snapped.values())
+    assert all(".axis_platform" in place for place in snapped)
+
+
+def differences(a: Any, b: Any, place: str = "") -> dict[str, tuple[Any, Any]]:
+    if isinstance(a, dict):
+        pairs = [(f"{place}.{key}", a.get(key), b.get(key)) for key in a.keys() | b.keys()]
+    elif isinstance(a, list):
+        assert len(a) == len(b)
+        pairs = [(f"{place}[{i}]", x, y) for i, (x, y) in enumerate(zip(a, b, strict=True))]
+    else:
+        return {} if a == b else {place: (a, b)}
+    return {k: v for where, x, y in pairs for k, v in differences(x, y, where).items()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_files_are_short_and_explained(name: str) -> None:
+    text = manipulators.path(name).read_text(encoding="utf-8")
+    assert max(map(len, text.splitlines())) <= 100
+    assert text.startswith("# ")
+    assert text.endswith("]\n")
+
+
+def test_unknown_name_has_the_nearest() -> None:
+    with pytest.raises(SpecError, match=r"no manipulator 'stewrt' \(did you mean stewart"):
+        manipulators.load("stewrt")
+    for name in ("", "../stewart", "stewart.toml", "x" * 5000, "\n"):
+        with pytest.raises(SpecError, match="expected one of delta, "):
+            manipulators.load(name)
+
+
+def test_path_is_a_specification_file() -> None:
+    assert read_spec(Path(str(manipulators.path("delta")))) == manipulators.load("delta")
