@@ -226,6 +226,9 @@ def complete_acceleration(
 
     Returns:
         (nv,) acceleration.
+
+    Raises:
+        OracleError: the given accelerations and the drives do not determine them.
     """
     rows = passive_extra_rows(manipulator)
     if not rows:
@@ -239,6 +242,11 @@ def complete_acceleration(
     gain = drive[rows] @ np.linalg.pinv(drive[others])
     effective = state.M[rows] - gain @ state.M[others]
     bias = state.Z[rows] - gain @ (state.Z - load)[others]
+    if np.linalg.cond(effective[:, rows]) > 1.0 / RANK_TOLERANCE or (
+        np.abs(effective[:, rows]).max()
+        < RANK_TOLERANCE * np.abs(state.M[np.ix_(rows, rows)]).max()
+    ):
+        raise OracleError("the drives leave the passive extra coordinates undetermined")
     result = np.array(A, dtype=float)
     result[rows] = 0.0
     result[rows] = -np.linalg.solve(effective[:, rows], effective @ result + bias)
@@ -251,7 +259,7 @@ def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -
     closure = leg_closure(manipulator, leg, X, q)
     free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
     left, values, _ = np.linalg.svd(closure.joints[:, free])
-    if len(free) > left.shape[0] or values.min() < RANK_TOLERANCE * values.max():
+    if len(free) > left.shape[0] or values.min() <= RANK_TOLERANCE * values.max():
         raise OracleError(f"leg {number} is singular or has undetermined freedoms")
     rates = _extra_selection(manipulator, number)
     task, total = task_size(manipulator.space), rates.shape[1]

@@ -62,6 +62,30 @@ class State(NamedTuple):
     wrench: Array
 
 
+def random_inertia(rng: np.random.Generator, moment: float) -> Matrix3:
+    """A full inertia tensor of any rigid body: tr(S) E - S of a positive second moment S.
+
+    Args:
+        rng: source of randomness.
+        moment: scale, kg m^2.
+    """
+    frame = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    second = frame @ np.diag(moment * rng.uniform(0.2, 1.0, 3)) @ frame.T
+    return matrix3(np.trace(second) * np.eye(3) - second)
+
+
+def vector3(vector: Array) -> Vector3:
+    """Three components as the description's tuple."""
+    x, y, z = (float(component) for component in vector)
+    return (x, y, z)
+
+
+def matrix3(matrix: Array) -> Matrix3:
+    """Three rows as the description's tuple."""
+    first, second, third = (vector3(row) for row in matrix)
+    return (first, second, third)
+
+
 class _Sampler:
     """Draws random geometry about a nominal manipulator.
 
@@ -85,7 +109,7 @@ class _Sampler:
         change = self.rng.uniform(-spread, spread, 3)
         if self.planar:
             change[2] = 0.0
-        return _vector3(np.array(vector) + change)
+        return vector3(np.array(vector) + change)
 
     def turned(self, angle: float) -> Array:
         """A random rotation (3, 3) by up to about `angle` rad, in the plane if planar."""
@@ -99,7 +123,7 @@ class _Sampler:
         if not self.structure_kept:
             return self.around(offset, 0.05 * self.reach * self.size)
         factors = 1.0 + 0.25 * self.reach * self.rng.uniform(-1.0, 1.0, 3)
-        return _vector3(np.array(offset) * factors)
+        return vector3(np.array(offset) * factors)
 
     def body(self, body: Body, *, may_gain_mass: bool) -> Body:
         """Random mass, centre of mass and full, physically possible inertia tensor."""
@@ -113,14 +137,8 @@ class _Sampler:
         return Body(
             mass=float(mass * self.rng.uniform(0.6, 1.6)),
             centre_of_mass=self.around(body.centre_of_mass, 0.5 * float(radius)),
-            inertia=self.inertia(moment),
+            inertia=random_inertia(self.rng, moment),
         )
-
-    def inertia(self, moment: float) -> Matrix3:
-        """tr(S) E - S of a positive second moment S: triangle inequalities hold."""
-        frame = np.linalg.qr(self.rng.normal(size=(3, 3)))[0]
-        second = frame @ np.diag(moment * self.rng.uniform(0.2, 1.0, 3)) @ frame.T
-        return _matrix3(np.trace(second) * np.eye(3) - second)
 
     def leg(self, leg: Leg) -> Leg:
         """Random geometry and inertia of a leg."""
@@ -131,7 +149,7 @@ class _Sampler:
             point = self.around(point, 0.25 * self.reach * arm)
         return Leg(
             base_point=self.around(leg.base_point, 0.15 * self.reach * self.size),
-            base_frame=_matrix3(frame),
+            base_frame=matrix3(frame),
             joints=tuple(self.joint(leg, index) for index in range(len(leg.joints))),
             platform_joint=self.platform_joint(leg),
             platform_point=point,
@@ -157,7 +175,7 @@ class _Sampler:
         joint = leg.platform_joint
         rotation = joint.rotation
         if rotation is not None:
-            rotation = _matrix3(np.array(rotation) @ self.turned(0.3 * self.reach))
+            rotation = matrix3(np.array(rotation) @ self.turned(0.3 * self.reach))
         axis_link, axis_platform = joint.axis_link, joint.axis_platform
         if axis_link is not None and axis_platform is not None:
             axis_link = self.axis(axis_link, [other.axis for other in leg.joints])
@@ -179,7 +197,7 @@ class _Sampler:
         if self.structure_kept and (aligned or related):
             return axis
         tilted = self.turned(0.3 * self.reach) @ vector
-        return _vector3(tilted / np.linalg.norm(tilted))
+        return vector3(tilted / np.linalg.norm(tilted))
 
 
 def randomise(
@@ -412,13 +430,3 @@ def _characteristic_length(manipulator: Manipulator) -> float:
             ]
         )
     )
-
-
-def _vector3(vector: Array) -> Vector3:
-    x, y, z = (float(component) for component in vector)
-    return (x, y, z)
-
-
-def _matrix3(matrix: Array) -> Matrix3:
-    first, second, third = (_vector3(row) for row in matrix)
-    return (first, second, third)
