@@ -43,7 +43,7 @@ from tests.oracle.randomisation import matrix3, random_inertia, vector3
 _DIRECTIONS = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
 _LEAST_LEG_QUALITY = 0.05
 _LEAST_DRIVE_QUALITY = 0.03
-_ATTEMPTS = 1000
+_ATTEMPTS = 300
 
 
 def mechanism(

@@ -211,6 +211,22 @@ def project(
     )
 
 
+def admissible(result: Result) -> tuple[Array, Array]:
+    """The motions that constraints leave: V = N v and A = c + N a.
+
+    Where the split of a leg's inertia between free and constrained directions is a matter
+    of choice, N^T M N, N^T (M c + Z) and N^T H are not.
+
+    Returns:
+        N: (nv, nv - nc) orthonormal columns.
+        c: (nv,) the smallest admissible acceleration.
+    """
+    left, values, _ = np.linalg.svd(result.Hk)
+    rank = int((values > RANK_TOLERANCE * values.max(initial=0.0)).sum())
+    c = -np.linalg.pinv(result.Hk.T, rcond=RANK_TOLERANCE) @ result.constraint_bias
+    return left[:, rank:], c
+
+
 def complete_acceleration(
     manipulator: Manipulator,
     X: Array,
