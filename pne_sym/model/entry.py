@@ -159,7 +159,7 @@ class Table:
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """A hint with the known names nearest to a mistaken one, or nothing."""
-    close = difflib.get_close_matches(name[:60].lower(), list(known), n=3, cutoff=0.5)
+    close = difflib.get_close_matches(name[:60].lower(), list(known), n=3, cutoff=0.6)
     return f" (did you mean {' or '.join(close)}?)" if close else ""
 
 

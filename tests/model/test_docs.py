@@ -1,0 +1,66 @@
+"""The examples and messages of docs/spec-format.md are true."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+
+import pytest
+
+from pne_sym.model import body, home, joints, legs, reader
+from pne_sym.model.errors import SpecError
+from pne_sym.model.reader import from_mapping, from_text, to_full_form
+
+PAGE = (Path(__file__).parents[2] / "docs" / "spec-format.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, flags=re.DOTALL)
+
+
+def test_the_complete_example() -> None:
+    manipulator = from_text(blocks("toml")[0], ".toml", "my_robot.toml")
+    assert [len(leg.joints) for leg in manipulator.legs] == [2, 2, 2]
+
+
+def test_the_full_form() -> None:
+    (text,) = blocks("json")
+    manipulator = from_text(text, ".json", "lift.json")
+    assert from_mapping(to_full_form(manipulator), "again") == manipulator
+
+
+def test_fragments_are_valid_in_a_specification() -> None:
+    overrides = next(text for text in blocks("toml") if "joints.1.link.mass" in text)
+    rest = 'name = "a"\nspace = "spatial"\nplatform.mass = 1\n'
+    end = "[home]\nX = [0.09, 0, 0.5, 0, 0, 0, 1]\nq = [0, -1.5707963, 0.5]\n"
+    (leg,) = from_text(rest + overrides + end, ".toml", "a.toml").legs
+    assert (leg.joints[2].actuated, leg.joints[2].link.mass) == (False, 0.8)
+    assert leg.platform_joint.offset == (0.0, 0.0, 0.01)
+
+
+def test_inertia_forms_parse() -> None:
+    lines = next(text for text in blocks("toml") if "principal values" in text).splitlines()
+    assert len([tomllib.loads(line) for line in lines]) == 4
+
+
+@pytest.mark.parametrize(
+    "fields",
+    [reader.FIELDS, legs.FIELDS, joints.FIELDS, joints.PLATFORM_FIELDS, body.FIELDS, home.FIELDS],
+)
+def test_every_field_is_documented(fields: tuple[str, ...]) -> None:
+    assert [name for name in fields if f"`{name}" not in PAGE] == []
+
+
+def test_messages_are_those_of_the_reader() -> None:
+    example = blocks("toml")[0]
+    changes = [
+        ("base_point = [0.0, 0.8]", "base_pont = [0.0, 0.8]"),
+        ('axis = "x"', "axis = [1, 1]"),
+        ("platform_point = [0.1732051, -0.1]", "platform_point = [0.1732051, 0.6]"),
+    ]
+    for (old, new), shown in zip(changes, blocks("text")[0].splitlines(), strict=True):
+        with pytest.raises(SpecError) as caught:
+            from_text(example.replace(old, new), ".toml", "my_robot.toml")
+        start, _, _ = shown.partition("...")
+        assert str(caught.value).startswith(start)
