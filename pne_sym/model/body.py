@@ -47,9 +47,8 @@ def read_body(entry: Entry, *, plane: bool) -> Body:
         tensor = _moved_to_centre(tensor, mass, centre)
     if plane:
         _check_planar(inertia, tensor)
-    else:
-        _check_spatial(inertia, tensor)
-    return Body(mass, centre, tensor)
+        return Body(mass, centre, tensor)
+    return Body(mass, centre, _checked_spatial(inertia, tensor))
 
 
 def _tensor(entry: Entry, *, plane: bool) -> Matrix3:
@@ -80,7 +79,8 @@ def _check_planar(entry: Entry, tensor: Matrix3) -> None:
         raise entry.fault("izz about the centre of mass not negative", _told(tensor[2][2], "izz"))
 
 
-def _check_spatial(entry: Entry, tensor: Matrix3) -> None:
+def _checked_spatial(entry: Entry, tensor: Matrix3) -> Matrix3:
+    """The tensor, made exactly symmetric where it is so up to rounding."""
     array = np.array(tensor)
     rounding = _RELATIVE * float(np.abs(array).max())
     if np.abs(array - array.T).max() > rounding:
@@ -98,6 +98,7 @@ def _check_spatial(entry: Entry, tensor: Matrix3) -> None:
             SpecWarning,
             stacklevel=2,
         )
+    return _matrix3(0.5 * (array + array.T))
 
 
 def _told(value: float, what: str) -> str:

@@ -200,3 +200,9 @@ def test_planar_frame_two_by_two() -> None:
     spec["legs"][0]["base_frame"] = [[0, -1], [1, 0]]
     spec["home"]["q"][0][0] -= math.pi / 2
     assert read(spec).legs[0].base_frame == ((0, -1, 0), (1, 0, 0), (0, 0, 1))
+
+
+def test_inertia_is_made_symmetric() -> None:
+    tensor = [[2.0, 0.5 + 1e-10, 0.0], [0.5, 2.0, 0.0], [0.0, 0.0, 3.0]]
+    found = np.array(read(spoilt(spatial(), "platform.inertia", tensor)).platform.inertia)
+    np.testing.assert_array_equal(found, found.T)
