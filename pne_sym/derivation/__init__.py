@@ -1,12 +1,38 @@
 """A derivation as data: named equations, the laws behind them, the notation."""
 
+from pne_sym.derivation.book import Book
 from pne_sym.derivation.equation import (
     Chapter,
+    Condition,
     Derivation,
     Equation,
+    Frame,
+    Given,
     Law,
+    LegTypeInfo,
+    Output,
     Quantity,
     ReciprocalBasis,
+    Trouble,
+    names_in,
 )
+from pne_sym.derivation.parameters import ParameterField, ParameterTable
 
-__all__ = ["Chapter", "Derivation", "Equation", "Law", "Quantity", "ReciprocalBasis"]
+__all__ = [
+    "Book",
+    "Chapter",
+    "Condition",
+    "Derivation",
+    "Equation",
+    "Frame",
+    "Given",
+    "Law",
+    "LegTypeInfo",
+    "Output",
+    "ParameterField",
+    "ParameterTable",
+    "Quantity",
+    "ReciprocalBasis",
+    "Trouble",
+    "names_in",
+]

@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import LegSum, RuleApplication, TensorLegSum, TensorSymbol, VectorLegSum
 from pne_sym.vector import VectorSymbol
 
@@ -59,6 +60,69 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Given:
+    """A vector, tensor or scalar that is given: parameter, constant or state.
+
+    Attributes:
+        symbol: the symbol.
+        frame: name of the frame in which the components are given ("" for scalars).
+        components: SymPy symbols and numbers; 1, 3 or 9 (row by row).
+    """
+
+    symbol: Any
+    frame: str
+    components: tuple[Any, ...]
+
+
+@dataclass(frozen=True)
+class Frame:
+    """A frame of axes, seen from its parent.
+
+    Attributes:
+        name: unique name.
+        parent: name of the parent frame; None for the base.
+        rotation: nine entries row by row, parent_R_child; numbers, symbols, or
+            None where the entry is to be taken from `axes` or `rows`.
+        axes: the child's x, y, z axes as vectors known in the parent frame.
+        rows: the parent's x, y, z axes as vectors known in the child frame.
+        angle: (cosine, sine) symbols of a turn about the common z axis, or None.
+    """
+
+    name: str
+    parent: str | None
+    rotation: tuple[Any, ...] | None = None
+    axes: tuple[Any, ...] | None = None
+    rows: tuple[Any, ...] | None = None
+    angle: tuple[Any, Any] | None = None
+
+
+class Trouble(enum.StrEnum):
+    """Why a state is impossible."""
+
+    UNREACHABLE = "unreachable"
+    SINGULAR = "singular"
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What must hold for an equation to be usable.
+
+    UNREACHABLE: value >= 0.  SINGULAR: |value| > tolerance^power * scale.
+
+    Attributes:
+        trouble: what it means when the condition fails.
+        value: scalar expression.
+        scale: scalar made of parameters alone, of the value's unit.
+        power: 1 for a value, 2 for a squared value.
+    """
+
+    trouble: Trouble
+    value: Any
+    scale: Any = sp.S.Zero
+    power: int = 1
+
+
+@dataclass(frozen=True)
 class Equation:
     """One named equation, lhs = rhs.
 
@@ -73,6 +137,7 @@ class Equation:
         steps: uses of Rules I and II that lead to the right-hand side.
         expanded: what stood before Rules I and II were used.
         note: a remark for the reader.
+        conditions: what must hold for the equation to be usable.
     """
 
     id: str
@@ -85,6 +150,7 @@ class Equation:
     steps: tuple[RuleApplication, ...] = ()
     expanded: Any = None
     note: str = ""
+    conditions: tuple[Condition, ...] = ()
 
     @property
     def name(self) -> str:
@@ -105,11 +171,66 @@ class ReciprocalBasis:
         id: the equations' id.
         vectors: names of the v_k; two in the plane, three in space.
         duals: names of the w_j.
+        scales: sizes of the v_k, made of parameters alone, by which a singular
+            basis is recognised.
+        frames: names of frames in which the basis may be solved.
     """
 
     id: str
     vectors: tuple[Any, ...]
     duals: tuple[Any, ...]
+    scales: tuple[Any, ...]
+    frames: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where a quantity stands in an array that the generated code returns.
+
+    Attributes:
+        array: name of the array ("M", "Z", "H", "q", ...).
+        value: vector, tensor (components in `frame`) or scalar symbol or expression.
+        rows: (component, row) pairs; for a scalar ((0, row),).
+        columns: likewise for the second index of a tensor, or of a vector that
+            is laid along a row; empty where the array has one index.
+        leg_type: set when there is one such quantity per leg of the type.
+        leg_rows, leg_columns: offset added to the row or column, per leg.
+        mirrored: the transposed entries are set too.
+        symmetric: only the entries on and above the diagonal are computed.
+        frame: in which the components are taken.
+    """
+
+    array: str
+    value: Any
+    rows: tuple[tuple[int, int], ...]
+    columns: tuple[tuple[int, int], ...] = ()
+    leg_type: str | None = None
+    leg_rows: tuple[int, ...] = ()
+    leg_columns: tuple[int, ...] = ()
+    mirrored: bool = False
+    symmetric: bool = False
+    frame: str = "base"
+
+
+@dataclass(frozen=True)
+class LegTypeInfo:
+    """What code generation needs to know of a leg type.
+
+    Attributes:
+        name: prefix of names.
+        title: architecture notation.
+        indices: positions of its legs in the manipulator.
+        joints: number of chain joints.
+        methods: per joint how inverse kinematics finds it.
+        reasons: joint -> why there is no closed form.
+    """
+
+    name: str
+    title: str
+    indices: tuple[int, ...]
+    joints: int
+    methods: tuple[str, ...]
+    reasons: tuple[tuple[int, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -139,11 +260,21 @@ class Derivation:
         chapters: in order; names are defined before they are used.
         notation: by name.
         bases: reciprocal bases.
+        givens: components of what is given.
+        frames: frames, parents first.
+        parameters: the live parameters.
+        outputs: what the generated code returns.
+        leg_types: the leg types, in order of first appearance.
     """
 
     chapters: tuple[Chapter, ...]
     notation: dict[str, Quantity] = field(default_factory=dict)
     bases: tuple[ReciprocalBasis, ...] = ()
+    givens: tuple[Given, ...] = ()
+    frames: tuple[Frame, ...] = ()
+    parameters: ParameterTable = field(default_factory=ParameterTable)
+    outputs: tuple[Output, ...] = ()
+    leg_types: tuple[LegTypeInfo, ...] = ()
 
     def equations(self) -> Iterator[Equation]:
         """All equations in order."""

@@ -1,0 +1,1 @@
+"""Derivation -> Program: frames, components, common values, structural zeros."""

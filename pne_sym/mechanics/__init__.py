@@ -1,0 +1,1 @@
+"""Manipulator -> Derivation: leg kinematics, Newton-Euler, platform, assembly."""

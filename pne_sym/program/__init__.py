@@ -1,0 +1,1 @@
+"""Scalar straight-line programs: stages, statements, functions, counts."""

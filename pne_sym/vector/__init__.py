@@ -32,6 +32,7 @@ from pne_sym.vector.nodes import (
     ZeroTensor,
     ZeroVector,
     norm,
+    sum_over_legs,
     tensor_sum,
     vector_sum,
 )
@@ -71,6 +72,7 @@ __all__ = [
     "ZeroVector",
     "linear_form",
     "norm",
+    "sum_over_legs",
     "tensor_sum",
     "vector_sum",
 ]

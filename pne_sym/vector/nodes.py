@@ -162,7 +162,7 @@ class Axial(Vector):
 
 
 class VectorLegSum(Vector):
-    """Sum of a vector over all legs."""
+    """Sum of a vector over the legs of a type (build with `sum_over_legs`)."""
 
 
 class TensorAdd(Tensor):
@@ -215,7 +215,7 @@ class Transpose(Tensor):
 
 
 class TensorLegSum(Tensor):
-    """Sum of a tensor over all legs."""
+    """Sum of a tensor over the legs of a type (build with `sum_over_legs`)."""
 
 
 class _VectorScalar(_Printable, sp.Expr):
@@ -251,7 +251,16 @@ class PlaneCross(_VectorScalar):
 
 
 class LegSum(_VectorScalar):
-    """Sum of a scalar over all legs."""
+    """Sum of a scalar over the legs of a type (build with `sum_over_legs`)."""
+
+
+def sum_over_legs(value: Any, leg_type: str) -> Any:
+    """Sum of a scalar, vector or tensor over the legs of a type."""
+    if isinstance(value, Vector):
+        return ZeroVector if value == ZeroVector else VectorLegSum(value, Str(leg_type))
+    if isinstance(value, Tensor):
+        return ZeroTensor if value == ZeroTensor else TensorLegSum(value, Str(leg_type))
+    return sp.S.Zero if value == 0 else LegSum(sp.sympify(value), Str(leg_type))
 
 
 def norm(a: Vector) -> Scalar:
@@ -334,4 +343,5 @@ def compose(a: Tensor, b: Tensor) -> Tensor:
         return a
     factor_a, a = split_tensor_scale(a)
     factor_b, b = split_tensor_scale(b)
-    return scale_tensor(factor_a * factor_b, Compose(a, b))
+    product = b if a == Identity else a if b == Identity else Compose(a, b)
+    return scale_tensor(factor_a * factor_b, product)

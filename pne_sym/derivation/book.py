@@ -1,0 +1,128 @@
+"""Writing a derivation: chapters are opened, names are introduced once, equations appended."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation.equation import (
+    Chapter,
+    Condition,
+    Derivation,
+    Equation,
+    Frame,
+    Given,
+    Law,
+    LegTypeInfo,
+    Output,
+    Quantity,
+    ReciprocalBasis,
+)
+from pne_sym.derivation.parameters import ParameterTable
+from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
+
+
+class Book:
+    """Collects chapters and notation; every name has one meaning."""
+
+    def __init__(self) -> None:
+        self.notation: dict[str, Quantity] = {}
+        self.bases: list[ReciprocalBasis] = []
+        self.givens: list[Given] = []
+        self.frames: list[Frame] = []
+        self.parameters = ParameterTable()
+        self.outputs: list[Output] = []
+        self.leg_types: list[LegTypeInfo] = []
+        self._chapters: list[tuple[str, str, str | None, str, list[Equation]]] = []
+
+    def chapter(self, id_: str, title: str, text: str, leg_type: str | None = None) -> None:
+        """Open a chapter; equations that follow belong to it."""
+        self._chapters.append((id_, title, leg_type, text, []))
+
+    def note_quantity(self, quantity: Quantity) -> None:
+        """Introduce a name.
+
+        Raises:
+            ValueError: the name is taken.
+        """
+        if quantity.name in self.notation:
+            raise ValueError(f"the name {quantity.name!r} is already used")
+        self.notation[quantity.name] = quantity
+
+    def give(
+        self, symbol: Any, frame: str, components: Sequence[Any], quantity: Quantity
+    ) -> Any:
+        """Introduce a given vector, tensor or scalar with its components."""
+        self.note_quantity(quantity)
+        self.givens.append(Given(symbol, frame, tuple(components)))
+        return symbol
+
+    def define(
+        self,
+        name: str,
+        rhs: Any,
+        latex: str,
+        title: str,
+        law: Law,
+        *,
+        unit: str = "-",
+        reference: str = "",
+        body: str | None = None,
+        forms: Sequence[Any] = (),
+        linear: LinearForm | None = None,
+        expanded: Any = None,
+        note: str = "",
+        conditions: Sequence[Condition] = (),
+        symmetric: bool = False,
+        parameter: bool = False,
+    ) -> Any:
+        """Append an equation that defines a new name; returns its symbol."""
+        symbol: Any
+        if isinstance(rhs, Vector):
+            symbol = VectorSymbol(name)
+        elif isinstance(rhs, Tensor):
+            symbol = TensorSymbol(name, symmetric)
+        else:
+            symbol, rhs = sp.Symbol(name, real=True), sp.sympify(rhs)
+        self.note_quantity(Quantity(name, latex, title, unit, body, parameter))
+        prefix, _, _, _, equations = self._chapters[-1]
+        equations.append(
+            Equation(
+                id=f"{prefix}{len(equations) + 1}",
+                title=title,
+                lhs=symbol,
+                rhs=rhs,
+                law=law,
+                reference=reference,
+                forms=tuple(forms),
+                steps=linear.steps if linear else (),
+                expanded=expanded,
+                note=note,
+                conditions=tuple(conditions),
+            )
+        )
+        return symbol
+
+    def open_equations(self) -> tuple[Equation, ...]:
+        """The equations of the chapter that is being written."""
+        return tuple(self._chapters[-1][4])
+
+    def close(self) -> Derivation:
+        """The finished derivation; empty chapters are left out."""
+        chapters = tuple(
+            Chapter(id_, title, leg_type, text, tuple(equations))
+            for id_, title, leg_type, text, equations in self._chapters
+            if equations
+        )
+        return Derivation(
+            chapters,
+            dict(self.notation),
+            tuple(self.bases),
+            tuple(self.givens),
+            tuple(self.frames),
+            self.parameters,
+            tuple(self.outputs),
+            tuple(self.leg_types),
+        )

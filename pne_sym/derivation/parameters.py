@@ -1,0 +1,86 @@
+"""The live parameters of a derivation: fields, and the symbols of their entries."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+_AXES = "xyz"
+
+
+@dataclass(frozen=True)
+class ParameterField:
+    """One named parameter of the generated model.
+
+    Attributes:
+        name: field name in `Parameters` and in the C structure.
+        leg_type: name of the leg type whose legs it runs over, or None.
+        shape: shape of one leg's entry (or of the whole when not over legs).
+        unit: SI unit.
+        meaning: in words, with the frame.
+        paths: where it stands in the full form, one path per leg.
+        default: values of the specification, (legs,) + shape or shape.
+        zeros: flat indices (of one leg's entry) that are zero by structure.
+    """
+
+    name: str
+    leg_type: str | None
+    shape: tuple[int, ...]
+    unit: str
+    meaning: str
+    paths: tuple[str, ...]
+    default: NDArray[np.float64]
+    zeros: tuple[int, ...] = ()
+
+    @property
+    def size(self) -> int:
+        """Number of entries of one leg (or of the whole)."""
+        return int(np.prod(self.shape, dtype=int))
+
+
+@dataclass
+class ParameterTable:
+    """All fields, and which symbol is which entry.
+
+    Attributes:
+        fields: in the order of the generated structure.
+        entries: symbol name -> (field, flat index).
+        branches: symbol name -> sign (+1 or -1) per leg; fixed at generation.
+    """
+
+    fields: list[ParameterField] = field(default_factory=list)
+    entries: dict[str, tuple[ParameterField, int]] = field(default_factory=dict)
+    branches: dict[str, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
+
+    def add(self, parameter: ParameterField) -> tuple[sp.Expr, ...]:
+        """Add a field; returns its entries' symbols, zeros where the structure says so."""
+        self.fields.append(parameter)
+        symbols: list[sp.Expr] = []
+        for index in range(parameter.size):
+            if index in parameter.zeros:
+                symbols.append(sp.S.Zero)
+                continue
+            symbol = sp.Symbol(entry_name(parameter.name, parameter.shape, index), real=True)
+            self.entries[symbol.name] = (parameter, index)
+            symbols.append(symbol)
+        return tuple(symbols)
+
+    def add_branch(self, name: str, leg_type: str, signs: tuple[int, ...]) -> sp.Symbol:
+        """Add a sign per leg that is fixed at generation."""
+        symbol = sp.Symbol(name, real=True)
+        self.branches[name] = (leg_type, signs)
+        return symbol
+
+
+def entry_name(name: str, shape: tuple[int, ...], index: int) -> str:
+    """Name of one entry: field_x, field_xy, or the field's own name."""
+    if shape == ():
+        return name
+    if shape == (3,):
+        return f"{name}_{_AXES[index]}"
+    if shape == (3, 3):
+        return f"{name}_{_AXES[index // 3]}{_AXES[index % 3]}"
+    return f"{name}_{index}"

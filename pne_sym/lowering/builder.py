@@ -1,0 +1,299 @@
+"""Scalar statements with value numbering: equal expressions are computed once.
+
+Every value is an *atom*: a symbol, a negated symbol or a number.  Zeros, ones
+and signs therefore vanish as expressions are built, and what depends on
+parameters alone is told apart by its stage.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.program.ir import Stage
+
+Atom = Any  # sympy Symbol, -Symbol or Number
+
+
+@dataclass(frozen=True)
+class Statement:
+    """target = expr, computed at a stage, for an equation.
+
+    A sum over the legs of a type has `total_of` instead of being an expression
+    over legs: target = sum of expr.
+    """
+
+    target: sp.Symbol
+    expr: Any
+    stage: Stage
+    equation: str
+    total_of: str | None = None
+    is_named: bool = False
+
+
+@dataclass(frozen=True)
+class Guard:
+    """A condition on values: see `derivation.Condition`."""
+
+    trouble: str
+    value: Any
+    scale: Any
+    power: int
+    stage: Stage
+    equation: str
+
+
+class Builder:
+    """Statements in the order of their making."""
+
+    def __init__(self) -> None:
+        self.statements: list[Statement] = []
+        self.guards: list[Guard] = []
+        self._value: dict[Any, Atom] = {}
+        self._made: list[Any] = []
+        self.of: dict[sp.Symbol, Statement] = {}
+        self._stage: dict[sp.Symbol, Stage] = {}
+        self._names: set[str] = set()
+        self.live: set[sp.Symbol] = set()
+        self.equation = ""
+        self.leg_counts: dict[str, int] = {}
+
+    # ---- symbols ---------------------------------------------------------------------
+
+    def declare(self, symbol: sp.Symbol, stage: Stage) -> sp.Symbol:
+        """A symbol that is given from outside."""
+        self._stage[symbol] = stage
+        self._names.add(symbol.name)
+        return symbol
+
+    def stage_of(self, expr: Any) -> Stage:
+        """Stage at which an expression can be computed."""
+        return Stage.join(self._stage[s] for s in expr.free_symbols)
+
+    def _fresh(self, hint: str) -> str:
+        name, k = hint, 1
+        while name in self._names:
+            k += 1
+            name = f"{hint}_{k}"
+        self._names.add(name)
+        return name
+
+    # ---- values ----------------------------------------------------------------------
+
+    def let(self, expr: Any, hint: str = "", *, named: bool = False) -> Atom:
+        """The atom of an expression; a new statement only when the value is new."""
+        expr = sp.sympify(expr)
+        if expr.is_Number or expr.is_Symbol:
+            return expr
+        if expr.is_Mul and len(expr.args) == 2 and expr.args[0] == -1 and expr.args[1].is_Symbol:
+            return expr
+        if expr.could_extract_minus_sign():
+            return -self.let(-expr, hint, named=named)
+        known = self._value.get(expr)
+        if known is not None:
+            return known
+        stage = self.stage_of(expr)
+        return self._record(expr, stage, hint, named)
+
+    def _record(self, expr: Any, stage: Stage, hint: str, named: bool,
+                total_of: str | None = None, key: Any = None) -> sp.Symbol:
+        name = self._fresh(hint or f"{self._temporary()}")
+        symbol = sp.Symbol(name, real=True)
+        self._stage[symbol] = stage
+        statement = Statement(symbol, expr, stage, self.equation, total_of, named)
+        self.statements.append(statement)
+        self.of[symbol] = statement
+        key = expr if key is None else key
+        self._value[key] = symbol
+        self._made.append(key)
+        return symbol
+
+    def _temporary(self) -> str:
+        return "v"
+
+    def total(self, atom: Atom, leg_type: str, hint: str) -> Atom:
+        """Sum of a value over the legs of a type."""
+        if atom == 0:
+            return sp.S.Zero
+        if atom.could_extract_minus_sign():
+            return -self.total(-atom, leg_type, hint)
+        stage = self.stage_of(atom)
+        if not stage.per_leg:
+            return self.let(self.leg_counts[leg_type] * atom, hint)
+        key = ("total", leg_type, atom)
+        if key in self._value:
+            return self._value[key]
+        return self._record(atom, stage.after_sum(), hint, True, leg_type, key)
+
+    def guard(self, trouble: str, value: Atom, scale: Atom, power: int) -> None:
+        """Require a condition; constants and parameters need no guard at run time."""
+        if value.is_Number or not self.stage_of(value).depends_on_state:
+            return
+        stage = Stage.join((self.stage_of(value), self.stage_of(sp.sympify(scale))))
+        guard = Guard(trouble, value, sp.sympify(scale), power, stage, self.equation)
+        if guard not in self.guards:
+            self.guards.append(guard)
+
+    # ---- arithmetic on atoms -----------------------------------------------------------
+
+    def add(self, terms: Iterable[Atom], hint: str = "", *, named: bool = False) -> Atom:
+        """Sum of atoms."""
+        return self.let(sp.Add(*terms), hint, named=named)
+
+    def mul(self, a: Atom, b: Atom, hint: str = "", *, named: bool = False) -> Atom:
+        """Product of atoms; x/b times b is x."""
+        if a == 0 or b == 0:
+            return sp.S.Zero
+        if a.is_Number or b.is_Number:
+            return self.let(a * b, hint, named=named)
+        sign = 1
+        if a.is_Mul:
+            a, sign = -a, -sign
+        if b.is_Mul:
+            b, sign = -b, -sign
+        cancelled = self._cancel(a, b)
+        if cancelled is None:
+            cancelled = self._cancel(b, a)
+        if cancelled is None:
+            cancelled = self.let(a * b, hint, named=named)
+        return sign * cancelled
+
+    def _cancel(self, a: sp.Symbol, b: sp.Symbol) -> Atom | None:
+        """a b where a is made of 1/b, or b is 1/x and a is made of x; None if neither."""
+        made = self.of.get(a)
+        if made is None or made.total_of:
+            return None
+        inverse = self._value.get(1 / b)
+        base = self._base_of_inverse(b)
+        factors = made.expr.args if made.expr.is_Mul else (made.expr,)
+        for wanted in (inverse, base):
+            if wanted is not None and wanted in factors:
+                return self.let(made.expr / wanted)
+        if made.expr == 1 / b:
+            return sp.S.One
+        return None
+
+    def _base_of_inverse(self, b: sp.Symbol) -> Atom | None:
+        made = self.of.get(b)
+        if made is not None and made.expr.is_Pow and made.expr.exp == -1:
+            return made.expr.base
+        return None
+
+    def inverse(self, a: Atom) -> Atom:
+        """1 / atom."""
+        if a.is_Number:
+            return 1 / a
+        if a.is_Mul:
+            return -self.inverse(-a)
+        made = self.of.get(a)
+        if made is not None and made.expr.is_Pow and made.expr.exp == -1:
+            return made.expr.base
+        return self.let(1 / a, f"inv_{a.name}")
+
+    def divide(self, a: Atom, b: Atom, hint: str = "", *, named: bool = False) -> Atom:
+        """a / b; where terms of a hold the factor b it cancels term by term."""
+        if a == 0 or b == 1:
+            return a
+        if b == -1:
+            return -a
+        if b.is_Mul:
+            return -self.divide(a, -b, hint, named=named)
+        inverse = self.inverse(b)
+        terms = self._terms(a)
+        quotients = [self._quotient(term, b) for term in terms]
+        if len(terms) > 1 and any(q is not None for q in quotients):
+            parts = [self.mul(t, inverse) if q is None else q
+                     for t, q in zip(terms, quotients, strict=True)]
+            return self.add(parts, hint, named=named)
+        return self.mul(a, inverse, hint, named=named)
+
+    def _terms(self, a: Atom) -> list[Atom]:
+        """Terms of a sum, opening sums that were named on the way (two levels)."""
+        if a.is_Number:
+            return [a]
+        sign, symbol = (-1, -a) if a.is_Mul else (1, a)
+        made = self.of.get(symbol)
+        if made is None or made.total_of or not made.expr.is_Add:
+            return [a]
+        return [sign * term for term in made.expr.args]
+
+    def _quotient(self, term: Any, b: sp.Symbol) -> Atom | None:
+        """term / b if the factor b is visible in the term."""
+        sign = 1
+        if term.could_extract_minus_sign():
+            term, sign = -term, -1
+        made = self.of.get(term) if term.is_Symbol else None
+        product = made.expr if made is not None and not made.total_of else term
+        if product.is_Mul and b in product.args:
+            return sign * self.let(product / b)
+        return None
+
+    # ---- trials ----------------------------------------------------------------------
+
+    def mark(self) -> tuple[int, int, int]:
+        """A point to return to."""
+        return len(self.statements), len(self._made), len(self.guards)
+
+    def rollback(self, mark: tuple[int, int, int]) -> None:
+        """Forget all that was made since the mark."""
+        statements, made, guards = mark
+        for statement in self.statements[statements:]:
+            del self.of[statement.target], self._stage[statement.target]
+            self._names.discard(statement.target.name)
+        del self.statements[statements:]
+        for key in self._made[made:]:
+            del self._value[key]
+        del self._made[made:]
+        del self.guards[guards:]
+
+    def cost(self, atoms: Iterable[Atom]) -> int:
+        """Run-time operations needed for the atoms beyond what is live already."""
+        return sum(self.weight(s) for s in self._reach(atoms) if s.target not in self.live)
+
+    def weight(self, statement: Statement) -> int:
+        """Operations of a statement, over all legs; none at parameter stages."""
+        if not statement.stage.depends_on_state:
+            return 0
+        times = self.leg_counts[statement.stage.leg_type] if statement.stage.per_leg else 1
+        if statement.total_of:
+            return self.leg_counts[statement.total_of]
+        return times * operations(statement.expr)
+
+    def keep(self, atoms: Iterable[Atom]) -> None:
+        """Mark the atoms and all they need as live."""
+        for statement in self._reach(atoms):
+            self.live.add(statement.target)
+
+    def _reach(self, atoms: Iterable[Atom]) -> list[Statement]:
+        found: dict[sp.Symbol, Statement] = {}
+        stack = [s for atom in atoms for s in sp.sympify(atom).free_symbols]
+        while stack:
+            symbol = stack.pop()
+            if symbol in found or symbol in self.live or symbol not in self.of:
+                continue
+            found[symbol] = self.of[symbol]
+            stack.extend(self.of[symbol].expr.free_symbols)
+        return list(found.values())
+
+
+def operations(expr: Any) -> int:
+    """Additions, multiplications, divisions, roots and trigonometric calls of an expression."""
+    if expr.is_Symbol or expr.is_Number:
+        return 0
+    inner = sum(operations(arg) for arg in expr.args)
+    if expr.is_Add:
+        return inner + len(expr.args) - 1
+    if expr.is_Mul:
+        factors = [a for a in expr.args if a not in (1, -1)]
+        return inner + len(factors) - 1
+    if expr.is_Pow:
+        base, exponent = expr.args
+        if exponent.is_Integer and exponent > 0:
+            return inner + int(exponent) - 1
+        if exponent == sp.Rational(-1, 2):
+            return inner + 2
+        return inner + 1
+    return inner + 1

@@ -1,0 +1,144 @@
+"""The derivation of a manipulator, chapter by chapter."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pne_sym.derivation import Book, Derivation, Law, LegTypeInfo, Output
+from pne_sym.mechanics.branches import branch_signs
+from pne_sym.mechanics.inverse_kinematics import InverseKinematics, invert
+from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
+from pne_sym.mechanics.leg_geometry import build_geometry
+from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
+from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
+from pne_sym.mechanics.structure import LegType, leg_types
+from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.vector import Dot, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
+
+
+def derive(manipulator: Manipulator) -> Derivation:
+    """Derive the task-space dynamics of a manipulator.
+
+    Reference: section 2 of the paper; legs are derived once per leg type.
+    """
+    book = Book()
+    space = TASK_SPACES[manipulator.space]
+    platform = introduce_platform(book, manipulator, space)
+    types = leg_types(manipulator)
+    legs = []
+    for leg_type in types:
+        suffix = "" if len(types) == 1 else f"_{leg_type.name}"
+        legs.append(_derive_leg(book, manipulator, space, platform, leg_type, suffix))
+    writer = PlatformWriter(book, space, platform, [leg for leg, _ in legs])
+    writer.lump()
+    writer.equilibrium()
+    writer.blocks()
+    _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
+    return book.close()
+
+
+def _derive_leg(
+    book: Book, manipulator: Manipulator, space: TaskSpace, platform: PlatformMotion,
+    leg_type: LegType, suffix: str,
+) -> tuple[Leg, MotionWriter]:
+    prefix, title = leg_type.name, leg_type.architecture
+    book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", _GEOMETRY, prefix)
+    g = build_geometry(book, leg_type, suffix, space.planar)
+    bodies = introduce_bodies(book, g, space.planar)
+    book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
+    S = book.define(
+        g.name("S"), vector_sum((platform.t, g.platform_point, -g.base_point)), r"\mathbf S",
+        "from the base point to the connection point", Law.GEOMETRY, unit="m", body="base",
+        reference="Sec. 2.5, step 1.1")
+    x = S - g.offset[1]
+    if not isinstance(x, VectorSymbol):
+        x = book.define(g.name("x_1"), x, r"\mathbf x_{1}",
+                        "from the origin of joint 1 to the connection point", Law.GEOMETRY,
+                        unit="m", body=g.frame("axes", 0))
+    inverse = invert(book, g, x)
+    for branch, signs in zip(inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True):
+        book.parameters.add_branch(branch.symbol.name, leg_type.name, signs)
+    book.leg_types.append(_info(leg_type, inverse))
+    kinematics = MotionWriter(book, g, platform, space, inverse)
+    motion = kinematics.write(prefix)
+    book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", _NEWTON_EULER, prefix)
+    dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
+    leg = Leg(g, motion, dynamics)
+    _joint_outputs(book, manipulator, leg, inverse)
+    return leg, kinematics
+
+
+def _info(leg_type: LegType, inverse: InverseKinematics) -> LegTypeInfo:
+    count = len(leg_type.model.joints)
+    return LegTypeInfo(
+        leg_type.name, leg_type.architecture, leg_type.indices, count,
+        tuple(inverse.methods[j] for j in range(1, count + 1)),
+        tuple(sorted(inverse.reasons.items())))
+
+
+def _joint_outputs(book: Book, manipulator: Manipulator, leg: Leg,
+                   inverse: InverseKinematics) -> None:
+    """Displacements, rates and accelerations of the joints; the leg's force."""
+    starts, total = [], 0
+    for member in manipulator.legs:
+        starts.append(total)
+        total += len(member.joints)
+    indices = leg.g.leg_type.indices
+    for j in range(1, leg.g.count + 1):
+        rows = tuple(starts[i] + j - 1 for i in indices)
+        for array, value in (("q", inverse.q.get(j)), ("qd", leg.motion.qd[j]),
+                             ("qdd", leg.motion.qdd[j])):
+            if value is not None:
+                book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
+    book.outputs.append(Output(
+        "leg_force", leg.dynamics.true_force, ((0, 0),), tuple((c, c) for c in range(3)),
+        leg.name, tuple(indices)))
+
+
+def _potential(book: Book, platform: PlatformMotion, writer: PlatformWriter, legs: list[Leg],
+               kinematics: list[MotionWriter]) -> None:
+    """Potential energy, zero at the base origin."""
+    book.chapter("V", "Potential energy", "Weight times height, zero at the base origin.")
+    total: Any = -Dot(platform.gravity, writer.mass * platform.t + writer.moment)
+    for leg, motion in zip(legs, kinematics, strict=True):
+        g, terms = leg.g, []
+        for body in leg.dynamics.bodies:
+            if body.at_tip:
+                mass = body.mass if leg.motion.normals else 0
+                place = vector_sum((platform.t, g.platform_point))
+            else:
+                mass = body.mass
+                place = vector_sum((g.base_point, *_path(motion, g, body.joint)))
+            terms.append(mass * place + body.first_moment)
+        moment = vector_sum(terms)
+        if moment != ZeroVector:
+            total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)
+    energy = book.define("potential", total, "V", "potential energy", Law.ENERGY, unit="J")
+    book.outputs.append(Output("potential", energy, ((0, 0),)))
+
+
+def _path(motion: MotionWriter, g: Any, joint: int) -> list[Any]:
+    """Vectors from the base point to the origin of a link."""
+    group, path = g.group[joint], [motion.reach(joint)]
+    while group:
+        group = g.group[group - 1]
+        path.append(motion.spans[group])
+    return path
+
+
+_GEOMETRY = (
+    "Constant vectors of the leg, each fixed in a link, and the first moments and inertia tensors "
+    "of the links about their reference points: the connection point for the last link, the "
+    "joint for the others. All of this is computed once, when the parameters are set."
+)
+_INVERSE = (
+    "The joints are found one after another from the base, each from a quantity that the joints "
+    "beyond it cannot change. The signs of the roots are those of the home position."
+)
+_NEWTON_EULER = (
+    "From the last link to the base; of each equilibrium only the component along the joint's "
+    "freedom is taken, so that joint reactions never appear. The inertia force of the last link "
+    "acts at the connection point like the force F on the platform, and is carried along with it."
+)

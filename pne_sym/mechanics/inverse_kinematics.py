@@ -1,0 +1,396 @@
+"""Inverse kinematics of a leg, joint by joint, from invariants of the distal sub-chain.
+
+Joint j is found from an equation that the joints beyond it cannot change:
+
+* linear: a direction u fixed in link j, along all later revolute axes and
+  across all later slides; u . x keeps its value;
+* sphere: all later joints are revolutes through one centre; its distance to
+  the connection point is fixed;
+* direct: nothing follows.
+
+Nothing here knows leg architectures; a joint without such an equation has no
+closed form by this route, and the reason is told.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, vector_sum
+
+
+@dataclass(frozen=True)
+class Branch:
+    """A root whose sign is that of home.
+
+    Attributes:
+        symbol: the sign's symbol.
+        joint: joint number.
+        root: expression with the sign that the branch has (uses the true
+            cosine and sine, or displacement, of the joint).
+    """
+
+    symbol: sp.Symbol
+    joint: int
+    root: Any
+
+
+@dataclass
+class InverseKinematics:
+    """How each joint of a leg is found.
+
+    Attributes:
+        q: displacement symbols by joint.
+        methods: joint -> "linear", "sphere", "direct", "given" or "numeric".
+        reasons: why a joint has no closed form.
+        branches: roots whose sign is that of home.
+    """
+
+    q: dict[int, Any]
+    methods: dict[int, str]
+    reasons: dict[int, str]
+    branches: list[Branch]
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every joint has a closed form."""
+        return not self.reasons
+
+
+def invert(book: Book, g: LegGeometry, x: Vector) -> InverseKinematics:
+    """Write the inverse kinematics of a leg.
+
+    Args:
+        book: the derivation being written; a chapter is open.
+        g: geometry of the leg type.
+        x: vector from the first joint's origin to the connection point.
+    """
+    solver = _Solver(book, g)
+    for j in range(1, g.count + 1):
+        x = solver.joint(j, x)
+    return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches)
+
+
+class _Solver:
+    def __init__(self, book: Book, g: LegGeometry) -> None:
+        self.book = book
+        self.g = g
+        self.q: dict[int, Any] = {}
+        self.methods: dict[int, str] = {}
+        self.reasons: dict[int, str] = {}
+        self.branches: list[Branch] = []
+
+    def joint(self, j: int, x: Vector) -> Vector:
+        """Find joint j; returns the vector from joint j+1's origin to the connection point."""
+        g = self.g
+        if g.is_extra(j):
+            x = self._given(j, x)
+        elif g.turns(j):
+            x = self._turn(j, x)
+        else:
+            self._slide(j, x)
+        if not g.turns(j) or j in g.pitch:
+            along = self.q[j] * g.pitch.get(j, 1)
+            x = x - along * g.e[j]
+        x = x - g.offset[j + 1]
+        if j < g.count and not isinstance(x, VectorSymbol):
+            x = self.book.define(
+                g.name(f"x_{j + 1}"), x, rf"\mathbf x_{{{j + 1}}}",
+                f"from the origin of joint {j + 1} to the connection point", Law.GEOMETRY,
+                unit="m", body=g.frame("axes", g.group[j]),
+            )
+        return x
+
+    def _later(self, j: int) -> list[int]:
+        return [k for k in range(j + 1, self.g.count + 1) if not self.g.is_extra(k)]
+
+    def _invariant(self, j: int) -> tuple[str, Vector, Any] | None:
+        """(method, vector u fixed in link j, value of u . x) for joint j."""
+        g, later = self.g, self._later(j)
+        if any(k in g.pitch for k in later):
+            return None
+        turning = [k for k in later if g.turns(k)]
+        sliding = [k for k in later if not g.turns(k)]
+        if turning and all(g.parallel(turning[0], k) for k in turning) and all(
+            g.perpendicular(turning[0], k) for k in sliding
+        ):
+            if self._useful(j, turning[0]):
+                return "linear", g.e[turning[0]], self._constant(j, turning[0])
+        if not turning and sliding and len(sliding) == 1:
+            found = self._across_slide(j, sliding[0])
+            if found is not None:
+                return found
+        if turning and not sliding:
+            return self._sphere(j, turning)
+        return None
+
+    def _useful(self, j: int, k: int) -> bool:
+        """Whether u = e_k tells joint j: not along its axis (R), not across it (P)."""
+        if self.g.turns(j):
+            return self.g.parallel(j, k) == 0
+        return not self.g.perpendicular(j, k)
+
+    def _constant(self, j: int, k: int) -> Any:
+        """u . (sum of later offsets) for u = e_k, each term in its own link."""
+        g = self.g
+        terms = []
+        for i in range(j + 1, g.count + 2):
+            if g.offset[i] == ZeroVector:
+                continue
+            own = next((m for m in range(i - 1, j, -1) if g.turns(m) and g.parallel(m, k)), k)
+            terms.append(g.parallel(own, k) * Dot(g.e[own], g.offset[i]))
+        return sp.Add(*terms)
+
+    def _across_slide(self, j: int, p: int) -> tuple[str, Vector, Any] | None:
+        g = self.g
+        if g.turns(j):
+            if g.parallel(j, p):
+                return None
+            u: Vector = Cross(g.e[j], g.e[p])
+        else:
+            if g.parallel(j, p):
+                return None
+            u = g.e[j] if g.perpendicular(j, p) else g.e[j] - Dot(g.e[j], g.e[p]) * g.e[p]
+        constant = sp.Add(*(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2)))
+        return "linear", u, constant
+
+    def _sphere(self, j: int, turning: list[int]) -> tuple[str, Vector, Any] | None:
+        g = self.g
+        first = turning[0]
+        between = [g.offset[i] for i in range(first + 1, g.count + 1)]
+        if any(a != ZeroVector for a in between) or turning != list(range(first, g.count + 1)):
+            return None
+        centre = vector_sum(
+            [*(g.offset[i] for i in range(j + 1, first + 1)),
+             *(self.q[i] * g.e[i] for i in range(j + 1, first) if not g.turns(i))]
+        )
+        return "sphere", centre, g.offset[g.count + 1]
+
+    def _turn(self, j: int, x: Vector) -> Vector:
+        later = self._later(j)
+        found = self._invariant(j)
+        if found is None and not later and j not in self.g.pitch:
+            return self._direct(j, x)
+        if found is None or j in self.g.pitch or (found[0] == "sphere" and found[1] == ZeroVector):
+            self._numeric(j)
+            return x
+        method, u, value = found
+        self.methods[j] = method
+        if method == "sphere":
+            squared = (Dot(x, x) + Dot(u, u) - Dot(value, value)) / 2
+            value = self._scalar(f"Kd_{j}", squared, f"K^d_{{{j}}}",
+                                 f"projection on the centre's direction, from the distance "
+                                 f"fixed by the joints beyond joint {j}", "m^2")
+        return self._projection(j, x, u, value, method)
+
+    def _scalar(self, stem: str, rhs: Any, latex: str, title: str, unit: str = "m",
+                law: Law = Law.LOOP_CLOSURE, conditions: tuple[Condition, ...] = ()) -> Any:
+        if rhs == 0 or isinstance(rhs, sp.Symbol):
+            return rhs
+        return self.book.define(self.g.name(stem), rhs, latex, title, law, unit=unit,
+                                conditions=conditions)
+
+    def _turn_axes(self, j: int) -> tuple[Vector, Vector, Vector]:
+        """Axes of the turn frame of joint j (fixed in link j-1)."""
+        turn = self.g.frame("turn", j)
+        unit = (sp.S.One, sp.S.Zero, sp.S.Zero)
+        axes = []
+        for stem, latex, components, what in (
+            ("ref", r"\mathbf x", unit, "reference direction of the angle"),
+            ("across", r"\mathbf y", (unit[1], unit[0], unit[1]), "across the reference direction"),
+        ):
+            name = self.g.name(f"{stem}_{j}")
+            symbol = VectorSymbol(name)
+            self.book.give(symbol, turn, components, Quantity(
+                name, rf"{latex}^0_{{{j}}}", f"{what} of joint {j}, fixed in link {j - 1}", "-",
+                turn, parameter=True))
+            axes.append(symbol)
+        return axes[0], axes[1], self.g.e[j]
+
+    def _link_axes(self, j: int) -> tuple[Vector, Vector]:
+        """x and y axes of the canonical frame that joint j opens."""
+        frame = self.g.frame("axes", j)
+        axes = []
+        for stem, latex, components in (
+            ("link_x", r"\mathbf x", (1, 0, 0)), ("link_y", r"\mathbf y", (0, 1, 0)),
+        ):
+            name = self.g.name(f"{stem}_{j}")
+            symbol = VectorSymbol(name)
+            self.book.give(symbol, frame, tuple(map(sp.Integer, components)), Quantity(
+                name, rf"{latex}_{{{j}}}", f"direction across axis {j}, fixed in link {j}", "-",
+                frame, parameter=True))
+            axes.append(symbol)
+        return axes[0], axes[1]
+
+    def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
+        """Solve u . x = value for the angle of joint j, u turning with link j."""
+        g, e = self.g, self.g.e[j]
+        reference, across, _ = self._turn_axes(j)
+        n, m = self._link_axes(j)
+        A = self._scalar(f"px_{j}", Dot(reference, x), f"x_{{{j}}}",
+                         "component along the reference direction")
+        B = self._scalar(f"py_{j}", Dot(across, x), f"y_{{{j}}}",
+                         "component across the reference direction")
+        pattern = self._pattern(j, method, u)
+        u_n = self._scalar_parameter(f"un_{j}", Dot(u, n)) if pattern[0] is None else pattern[0]
+        u_m = self._scalar_parameter(f"um_{j}", Dot(u, m)) if pattern[1] is None else pattern[1]
+        K = self._scalar(f"Kc_{j}", u_n * A + u_m * B, f"K^c_{{{j}}}",
+                         f"factor of cos in the equation of joint {j}")
+        N = self._scalar(f"Ks_{j}", u_n * B - u_m * A, f"K^s_{{{j}}}",
+                         f"factor of sin in the equation of joint {j}")
+        along = sp.S.Zero if pattern[2] == 0 else Dot(u, e) * Dot(e, x)
+        C = self._scalar(f"Kr_{j}", value - along, f"K^r_{{{j}}}",
+                         f"right-hand side: K cos + N sin = C for joint {j}")
+        unit, scale = ("m^2", g.size**2) if method == "linear" else ("m^4", g.size**4)
+        rho2 = self._scalar(
+            f"rho2_{j}", K * K + N * N, rf"\rho_{{{j}}}^2", "squared amplitude", unit,
+            conditions=(Condition(Trouble.SINGULAR, K * K + N * N, scale, 2),),
+        )
+        sigma = self._branch_symbol(j)
+        c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
+        self.branches.append(Branch(sigma, j, K * s - N * c))
+        if C == 0:
+            root = self._scalar(f"root_{j}", sigma * sp.sqrt(rho2), rf"\rho_{{{j}}}",
+                                "amplitude, with the sign of the branch", "m")
+            self._cosine_sine(j, -N / root, K / root)
+            x_n, x_m = u_m * root, -u_n * root
+        else:
+            discriminant = self._scalar(
+                f"disc_{j}", rho2 - C**2, rf"\Delta_{{{j}}}", "discriminant", unit,
+                conditions=(Condition(Trouble.UNREACHABLE, rho2 - C**2),))
+            root = self._scalar(f"root_{j}", sigma * sp.sqrt(discriminant), rf"r_{{{j}}}",
+                                "root, with the sign of the branch", "m")
+            self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
+            x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
+        length2 = self._scalar_parameter(f"uu_{j}", u_n**2 + u_m**2)
+        return self.book.define(
+            g.name(f"xi_{j}"), (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
+            rf"\boldsymbol\xi_{{{j}}}",
+            f"the vector from joint {j} to the connection point, resolved along link {j}",
+            Law.LOOP_CLOSURE, unit="m", body=g.frame("axes", j),
+        )
+
+    def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
+        """Components of u in link j's canonical axes where the structure fixes them, else None."""
+        g = self.g
+        for k in range(1, g.count + 1):
+            if u == g.e[k]:
+                return g.axis_pattern(j, k)  # type: ignore[return-value]
+            if u == Cross(g.e[j], g.e[k]):
+                along_x, along_y, _ = g.axis_pattern(j, k)
+                turned = None if along_y is None else -along_y
+                return (turned, along_x, sp.S.Zero)
+            if method == "sphere" and u == g.offset[k]:
+                zero = g.offset_is_zero(j, k)
+                return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
+        return (None, None, None)
+
+    def _scalar_parameter(self, stem: str, rhs: Any) -> Any:
+        if rhs.is_number or isinstance(rhs, sp.Symbol):
+            return rhs
+        return self.book.define(
+            self.g.name(stem), rhs, rf"\mathrm{{{stem.split('_')[0]}}}_{{{stem.split('_')[1]}}}",
+            "constant of the link", Law.LUMPING, parameter=True)
+
+    def _branch_symbol(self, j: int) -> sp.Symbol:
+        name = self.g.name(f"branch_{j}")
+        symbol = sp.Symbol(name, real=True)
+        self.book.note_quantity(Quantity(
+            name, rf"\sigma_{{{j}}}", f"assembly branch of joint {j}: +1 or -1, as at home", "-",
+            parameter=True))
+        return symbol
+
+    def _cosine_sine(self, j: int, cosine: Any, sine: Any) -> None:
+        book, g = self.book, self.g
+        c = book.define(g.name(f"c_{j}"), cosine, f"c_{{{j}}}",
+                        f"cosine of the angle of joint {j} from its reference direction",
+                        Law.LOOP_CLOSURE)
+        s = book.define(g.name(f"s_{j}"), sine, f"s_{{{j}}}",
+                        f"sine of the angle of joint {j} from its reference direction",
+                        Law.LOOP_CLOSURE)
+        c0, s0 = g.zero_turn[j]
+        self.q[j] = book.define(
+            g.name(f"q_{j}"), sp.atan2(s * c0 - c * s0, c * c0 + s * s0), f"q_{{{j}}}",
+            f"displacement of joint {j}", Law.LOOP_CLOSURE, unit="rad")
+
+    def _direct(self, j: int, x: Vector) -> Vector:
+        """Nothing follows: the tip's offset must turn into x."""
+        g = self.g
+        reference, across, e = self._turn_axes(j)
+        n, m = self._link_axes(j)
+        tip = g.offset[g.count + 1]
+        if tip == ZeroVector:
+            self.reasons[j] = "the connection point lies on the joint's axis"
+            self._numeric(j, self.reasons[j])
+            return x
+        A, B = Dot(reference, x), Dot(across, x)
+        k, l = Dot(tip, n), Dot(tip, m)
+        length2 = self._scalar_parameter(f"uu_{j}", k**2 + l**2)
+        self.methods[j] = "direct"
+        self._cosine_sine(j, (k * A + l * B) / length2, (k * B - l * A) / length2)
+        return tip
+
+    def _given(self, j: int, x: Vector) -> Vector:
+        """The displacement is a coordinate of its own."""
+        g, book = self.g, self.book
+        self.methods[j] = "given"
+        name = g.name(f"y_{j}_extra")
+        q = sp.Symbol(name, real=True)
+        book.note_quantity(Quantity(name, f"y_{{{j}}}", f"extra coordinate: displacement of "
+                                    f"joint {j}", "rad" if g.turns(j) else "m"))
+        if not g.turns(j):
+            self.q[j] = q
+            return x
+        c0, s0 = g.zero_turn[j]
+        for stem, rhs, what in (
+            ("c", sp.cos(q) * c0 - sp.sin(q) * s0, "cosine"),
+            ("s", sp.sin(q) * c0 + sp.cos(q) * s0, "sine"),
+        ):
+            book.define(g.name(f"{stem}_{j}"), rhs, f"{stem}_{{{j}}}",
+                        f"{what} of the angle of joint {j} from its reference direction",
+                        Law.GEOMETRY)
+        self.q[j] = q
+        return x
+
+    def _slide(self, j: int, x: Vector) -> None:
+        g, e = self.g, self.g.e[j]
+        later = self._later(j)
+        found = self._invariant(j) if later else ("direct", e, Dot(e, g.offset[g.count + 1]))
+        if found is None:
+            self._numeric(j)
+            return
+        method, u, value = found
+        self.methods[j] = method
+        if method != "sphere":
+            self.q[j] = self.book.define(
+                g.name(f"q_{j}"), (Dot(u, x) - value) / (Dot(u, e) if u != e else 1),
+                f"q_{{{j}}}", f"displacement of joint {j}", Law.LOOP_CLOSURE, unit="m")
+            return
+        centre, tip = u, value
+        y = x - centre
+        if not isinstance(y, VectorSymbol):
+            y = self.book.define(g.name(f"from_centre_{j}"), y, rf"\mathbf y_{{{j}}}",
+                                 "from the centre at zero displacement to the connection point",
+                                 Law.GEOMETRY, unit="m")
+        along = self._scalar(f"px_{j}", Dot(e, y), f"x_{{{j}}}", f"component along axis {j}")
+        squared = along**2 - Dot(y, y) + Dot(tip, tip)
+        discriminant = self._scalar(
+            f"disc_{j}", squared, rf"\Delta_{{{j}}}",
+            "discriminant of the distance equation", "m^2",
+            conditions=(Condition(Trouble.UNREACHABLE, squared),))
+        sigma = self._branch_symbol(j)
+        q = sp.Symbol(g.name(f"q_{j}"), real=True)
+        self.branches.append(Branch(sigma, j, q - along))
+        self.q[j] = self.book.define(
+            q.name, along + sigma * sp.sqrt(discriminant), f"q_{{{j}}}",
+            f"displacement of joint {j}", Law.LOOP_CLOSURE, unit="m")
+
+    def _numeric(self, j: int, reason: str = "") -> None:
+        self.methods[j] = "numeric"
+        self.reasons[j] = reason or (
+            "no direction or distance is left unchanged by the joints beyond it")

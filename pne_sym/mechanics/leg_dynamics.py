@@ -1,0 +1,397 @@
+"""Newton-Euler of a leg, from the most distal link to the base, along the freedoms only.
+
+The inertia force f_u of the last link and the leg's force F on the platform act
+at the same point, so the equilibrium of the distal links along the freedom of
+joint j reads v_j . (F + f_u) = tau_j - Gamma_j, where Gamma_j collects the
+moments (revolute), forces (prismatic) or both (helical) of everything but f_u.
+Joint reactions never appear.
+
+Reference: sections 2.2, 2.3 and 2.5, Eqs. 1 to 4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from pne_sym.derivation import Book, Law, ParameterField, Quantity
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.leg_motion import LegMotion, LinearWriter, MotionWriter
+from pne_sym.mechanics.platform_motion import PlatformMotion, symmetric_entries
+from pne_sym.vector import (
+    Axial,
+    Compose,
+    Cross,
+    Dot,
+    Identity,
+    LinearForm,
+    Outer,
+    TensorSymbol,
+    Vector,
+    VectorSymbol,
+    ZeroTensor,
+    ZeroVector,
+    tensor_sum,
+    vector_sum,
+)
+
+
+@dataclass(frozen=True)
+class LinkBody:
+    """A link with inertia.
+
+    Attributes:
+        joint: number of the joint that moves it.
+        group: the group that it turns with.
+        at_tip: its reference point is the connection point, else its joint.
+        mass: scalar.
+        first_moment: m r about the reference point, fixed in the link.
+        inertia: tensor about the reference point.
+    """
+
+    joint: int
+    group: int
+    at_tip: bool
+    mass: Any
+    first_moment: Vector
+    inertia: Any
+
+
+@dataclass
+class LegDynamics:
+    """What the platform needs of a leg.
+
+    Attributes:
+        bodies: links with inertia.
+        tip_mass: mass gathered at the connection point.
+        force: c, the reduced leg force without actuation (Eq. 3).
+        columns: actuated joint -> (w_j, extra rows) of H.
+        Q, U: reduced closed form F = h tau - Q a_p - U (Eq. 4).
+        true_force: Eq. 3 with the tip mass.
+        extra_rows: extra joint -> (row force, its linear form).
+        reach: of the links' reference points, for the potential energy.
+        form: linear form of the reduced force.
+    """
+
+    bodies: list[LinkBody]
+    tip_mass: Any
+    force: Any = None
+    true_force: Any = None
+    Q: Any = None
+    U: Any = None
+    form: LinearForm | None = None
+    extra_rows: dict[int, tuple[Any, LinearForm]] = field(default_factory=dict)
+
+
+def introduce_bodies(book: Book, g: LegGeometry, planar: bool) -> list[LinkBody]:
+    """Parameters of the links, and their lumped inertia about their reference points."""
+    bodies = []
+    last_moving = g.count
+    for j, joint in enumerate(g.leg_type.model.joints, 1):
+        if joint.link.is_massless:
+            continue
+        bodies.append(_body(book, g, j, at_tip=j == last_moving, planar=planar))
+    return bodies
+
+
+def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> LinkBody:
+    legs, frame = g.leg_type, g.frame("spec", g.group[j])
+
+    def parameter(stem: str, shape: tuple[int, ...], unit: str, meaning: str, pick: Any,
+                  zeros: tuple[int, ...] = ()) -> tuple[Any, ...]:
+        paths = tuple(f"legs[{i}].joints[{j - 1}].link.{stem}" for i in legs.indices)
+        return book.parameters.add(ParameterField(
+            f"{legs.name}_link{j}_{stem}", legs.name, shape, unit, meaning, paths,
+            np.asarray(legs.over_legs(pick)), zeros))
+
+    (mass,) = parameter("mass", (), "kg", f"mass of link {j}", lambda leg: leg.joints[j - 1].link.mass)
+    book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", "kg", parameter=True))
+    centre = parameter("centre_of_mass", (3,), "m", f"centre of mass of link {j}, link frame",
+                       lambda leg: leg.joints[j - 1].link.centre_of_mass, (2,) if planar else ())
+    entries = parameter("inertia", (3, 3), "kg m^2",
+                        f"inertia tensor of link {j} about its centre of mass, link axes",
+                        lambda leg: leg.joints[j - 1].link.inertia)
+    rho = book.give(VectorSymbol(g.name(f"rho_{j}")), frame, centre, Quantity(
+        g.name(f"rho_{j}"), rf"\boldsymbol\rho_{{{j}}}",
+        f"origin of link {j} to its centre of mass, fixed in the link", "m", frame, parameter=True))
+    inertia = book.give(
+        TensorSymbol(g.name(f"I_{j}"), True), frame, symmetric_entries(entries, planar),
+        Quantity(g.name(f"I_{j}"), rf"\mathbf I_{{{j}}}",
+                 f"inertia tensor of link {j} about its centre of mass", "kg m^2", frame,
+                 parameter=True))
+    arm = rho
+    if at_tip and g.offset[g.count + 1] != ZeroVector:
+        arm = book.define(
+            g.name(f"rho_tip_{j}"), rho - g.offset[g.count + 1], rf"\boldsymbol\rho'_{{{j}}}",
+            f"connection point to the centre of mass of link {j}", Law.LUMPING, unit="m",
+            body=frame, parameter=True)
+    point = "the connection point" if at_tip else f"the origin of link {j}"
+    moment = book.define(
+        g.name(f"h_{j}"), mass * arm, rf"\mathbf h_{{{j}}}",
+        f"first moment of link {j} about {point}", Law.LUMPING, unit="kg m", body=frame,
+        parameter=True)
+    tensor = book.define(
+        g.name(f"J_{j}"), inertia + mass * (Dot(arm, arm) * Identity - Outer(arm, arm)),
+        rf"\mathbf J_{{{j}}}", f"inertia tensor of link {j} about {point}", Law.LUMPING,
+        unit="kg m^2", body=frame, parameter=True, symmetric=True)
+    return LinkBody(j, g.group[j], at_tip, mass, moment, tensor)
+
+
+class DynamicsWriter:
+    """Writes Newton-Euler of a leg."""
+
+    def __init__(
+        self, book: Book, g: LegGeometry, platform: PlatformMotion, motion: LegMotion,
+        kinematics: MotionWriter, bodies: list[LinkBody],
+    ) -> None:
+        self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
+        self.write = LinearWriter(book, g, motion)
+        self.bodies = bodies
+        self.zero: LinearForm = LinearForm({}, ZeroVector)
+
+    def rest(self, symbol: Any) -> Any:
+        """Remainder of a quantity at zero acceleration."""
+        return self.motion.known[symbol].remainder if symbol in self.motion.known else symbol
+
+    def body_forces(self, body: LinkBody) -> tuple[Any, Any]:
+        """Inertia-minus-gravity force f and the part of the moment from h x a."""
+        g, motion, j = self.g, self.motion, body.joint
+        tensor, tensor_rest = motion.acceleration_tensor[body.group]
+        h, omega, alpha = body.first_moment, motion.omega[body.group], motion.alpha[body.group]
+        frame = g.frame("axes", body.group)
+        relative = self._relative_acceleration(body)
+        turning: Any = ZeroVector
+        if body.group:
+            turning = self.write.define(
+                f"phi_{j}", Cross(alpha, h) + Cross(omega, Cross(omega, h)),
+                rf"\boldsymbol\varphi_{{{j}}}",
+                f"inertia force of link {j} from its turning about its reference point",
+                Law.NEWTON, unit="N", coefficient_latex=rf"\boldsymbol\Phi_{{{j}}}", body=frame,
+                forms=(tensor @ h,), rest_forms=(tensor_rest @ h,), reference="Eq. 1")
+        return turning, relative
+
+    def _relative_acceleration(self, body: LinkBody) -> Any:
+        """Acceleration of the reference point minus gravity."""
+        g, motion, j = self.g, self.motion, body.joint
+        frame = g.frame("axes", body.group)
+        if body.at_tip:
+            rhs, forms, rests = motion.S_ddot - self.p.gravity, (), ()
+        else:
+            slides = [i for i in range(1, j + 1) if g.group[i] == body.group
+                      and (not g.turns(i) or i in g.pitch)]
+            value, form, rest = self.k.point_acceleration(body.group, self.k.reach(j), slides)
+            rhs = value - self.p.gravity
+            forms, rests = (form - self.p.gravity,), (rest - self.p.gravity,)
+        return self.write.define(
+            f"a_{j}", rhs, rf"\mathbf a_{{{j}}}",
+            f"acceleration of the reference point of link {j}, less gravity", Law.RATE,
+            unit="m/s^2", coefficient_latex=rf"\mathbf V_{{{j}}}", body=frame,
+            forms=forms, rest_forms=rests, reference="Eqs. 10, 11, 17, 18")
+
+    def group_moment(self, group: int, relative: dict[int, Any]) -> Any:
+        """Moment of inertia of a group's links about their own reference points (Euler)."""
+        g, motion = self.g, self.motion
+        members = [b for b in self.bodies if b.group == group]
+        if not members or group == 0:
+            return ZeroVector
+        frame = g.frame("axes", group)
+        J = tensor_sum(b.inertia for b in members)
+        if not isinstance(J, TensorSymbol):
+            J = self.book.define(
+                g.name(f"J_group_{group}"), J, rf"\mathbf J^\Sigma_{{{group}}}",
+                f"inertia of the links that turn with link {group}, each about its reference point",
+                Law.LUMPING, unit="kg m^2", body=frame, parameter=True, symmetric=True)
+        second = self.book.define(
+            g.name(f"Sigma_{group}"), self._half_trace(J) * Identity - J,
+            rf"\boldsymbol\Sigma_{{{group}}}", f"second moment of mass that belongs to {J.name}",
+            Law.LUMPING, unit="kg m^2", body=frame, parameter=True, symmetric=True)
+        omega, alpha = motion.omega[group], motion.alpha[group]
+        moments = [Cross(b.first_moment, relative[b.joint]) for b in members]
+        tensor, tensor_rest = motion.acceleration_tensor[group]
+        rest_moments = [Cross(b.first_moment, self.rest(relative[b.joint])) for b in members]
+        return self.write.define(
+            f"mu_{group}",
+            vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
+            rf"\boldsymbol\mu_{{{group}}}",
+            f"inertia moment of the links that turn with link {group}, about their reference points",
+            Law.EULER, unit="N m", coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}", body=frame,
+            forms=(vector_sum((Axial(Compose(tensor, second)), *moments)),),
+            rest_forms=(vector_sum((Axial(Compose(tensor_rest, second)), *rest_moments)),),
+            reference="Eq. 2")
+
+    def _half_trace(self, J: Any) -> Any:
+        """Half the trace of the group's inertia."""
+        axes = []
+        for k in range(3):
+            name = self.g.name(f"unit{k}_{J.name}")
+            symbol = VectorSymbol(name)
+            components = [sp.Integer(int(i == k)) for i in range(3)]
+            frame = self.book.notation[J.name].body or "base"
+            self.book.give(symbol, frame, components, Quantity(
+                name, rf"\mathbf{{i}}_{{{k + 1}}}", "coordinate direction", "-", frame,
+                parameter=True))
+            axes.append(symbol)
+        return self.book.define(
+            self.g.name(f"trace_{J.name}"), sp.Add(*(Dot(a, J @ a) for a in axes)) / 2,
+            rf"\tfrac12\operatorname{{tr}}{self.book.notation[J.name].latex}",
+            f"half the trace of {J.name}", Law.LUMPING, unit="kg m^2", parameter=True)
+
+    def run(self) -> LegDynamics:
+        """Write Newton-Euler from the last link to the base and solve for the leg's force."""
+        g, motion = self.g, self.motion
+        tip = next((b for b in self.bodies if b.at_tip), None)
+        forces: dict[int, Any] = {}
+        relative: dict[int, Any] = {}
+        phi_tip: Any = ZeroVector
+        for body in self.bodies:
+            turning, acceleration = self.body_forces(body)
+            relative[body.joint] = acceleration
+            if body.at_tip:
+                phi_tip = turning
+                continue
+            forces[body.joint] = self._link_force(body, turning, acceleration)
+        gamma = self._recursion(forces, relative)
+        result = LegDynamics(self.bodies, tip.mass if tip else sp.S.Zero)
+        self._solve(result, gamma, phi_tip, relative.get(tip.joint) if tip else None)
+        for j in motion.ydd:
+            self._extra_row(result, j, gamma, phi_tip)
+        return result
+
+    def _link_force(self, body: LinkBody, turning: Any, acceleration: Any) -> Any:
+        j = body.joint
+        return self.write.define(
+            f"f_{j}", body.mass * acceleration + turning, rf"\mathbf f_{{{j}}}",
+            f"inertia force of link {j} less its weight", Law.NEWTON, unit="N",
+            coefficient_latex=rf"\mathbf F'_{{{j}}}", body=self.g.frame("axes", body.group),
+            reference="Eq. 1")
+
+    def _recursion(self, forces: dict[int, Any], relative: dict[int, Any]) -> dict[int, Any]:
+        """Gamma_j of every joint, from the tip to the base."""
+        g = self.g
+        groups = sorted({0, *g.group.values()}, reverse=True)
+        force_out: Any = ZeroVector  # inertia force of all groups beyond
+        moment_out: Any = ZeroVector  # their moment about the next group's origin
+        gamma: dict[int, Any] = {}
+        for group in groups:
+            frame = g.frame("axes", group)
+            members = [j for j in range(1, g.count + 1) if g.group[j] == group]
+            moment = self._group_total(group, members, forces, relative, force_out, moment_out)
+            force: Any = force_out
+            for j in reversed(members):
+                force = self._sum_force(j, force, forces.get(j, ZeroVector), frame)
+                if j != group:
+                    gamma[j] = self._freedom(j, Dot(g.e[j], force))
+            if group:
+                component = Dot(g.e[group], moment)
+                if group in g.pitch:
+                    component = component + g.pitch[group] * Dot(g.e[group], force)
+                gamma[group] = self._freedom(group, component)
+            force_out, moment_out = force, moment
+        return gamma
+
+    def _group_total(self, group: int, members: list[int], forces: dict[int, Any],
+                     relative: dict[int, Any], force_out: Any, moment_out: Any) -> Any:
+        """Moment about the group's origin of everything from the group outwards."""
+        g = self.g
+        if group == 0:
+            return ZeroVector
+        terms = [self.group_moment(group, relative), moment_out,
+                 Cross(self.k.spans[group], force_out)]
+        terms += [Cross(self.k.reach(j), forces[j]) for j in members if j in forces]
+        total = vector_sum(terms)
+        if isinstance(total, VectorSymbol) or total == ZeroVector:
+            return total
+        return self.write.define(
+            f"N_{group}", total, rf"\mathbf N_{{{group}}}",
+            f"moment about joint {group} of the links from {group} outwards, the force at the "
+            f"connection point left out", Law.EULER, unit="N m",
+            coefficient_latex=rf"\mathbf D_{{{group}}}", body=g.frame("axes", group),
+            reference="Sec. 2.5, step 1.3")
+
+    def _sum_force(self, j: int, outer: Any, own: Any, frame: str) -> Any:
+        total = vector_sum((own, outer))
+        if isinstance(total, VectorSymbol) or total == ZeroVector:
+            return total
+        return self.write.define(
+            f"T_{j}", total, rf"\mathbf T_{{{j}}}",
+            f"inertia force of the links from {j} outwards, the last link left out", Law.NEWTON,
+            unit="N", coefficient_latex=rf"\mathbf C_{{{j}}}", body=frame)
+
+    def _freedom(self, j: int, component: Any) -> Any:
+        if component == 0:
+            return sp.S.Zero
+        what = {"R": "moment about", "P": "force along", "H": "moment and pitch times force along"}
+        return self.write.define(
+            f"Gamma_{j}", component, rf"\Gamma_{{{j}}}",
+            f"{what[self.g.kind(j).value]} axis {j} of the distal links' inertia and weight",
+            Law.FREEDOM, unit="N m" if self.g.turns(j) else "N",
+            coefficient_latex=rf"\mathbf c_{{{j}}}", reference="Sec. 2.2, joint table")
+
+    def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:
+        """The leg's force on the platform, Eq. 3 and Eq. 4."""
+        g, motion, book = self.g, self.motion, self.book
+        frame = self.k.tip_frame()
+        G: Any = vector_sum(gamma[j] * w for j, w in motion.w.items() if gamma[j] != 0)
+        if G != ZeroVector:
+            G = self.write.define(
+                "G", G, r"\mathbf G", "force at the connection point that balances the leg's "
+                "inertia and weight along all freedoms", Law.RECIPROCITY, unit="N",
+                coefficient_latex=r"\mathbf C", body=frame, reference="Sec. 2.3")
+        self.G = G
+        if motion.normals and a_tip is not None:
+            # The reaction along a direction left out is lambda itself, the last link's share
+            # included (contract of lambda): nothing of it may stay in Q and U, and the last
+            # link's mass cannot move to the platform.
+            phi = self._without_normals(result.tip_mass * a_tip + phi)
+            result.tip_mass, a_tip = sp.S.Zero, None
+        c = self.write.define(
+            "c", -(G + phi), r"\mathbf c",
+            "leg force on the platform without actuation and without the mass at the connection "
+            "point", Law.REDUCTION, unit="N", coefficient_latex=r"-\mathbf Q'", body=frame,
+            reference="Eq. 3") if G + phi != ZeroVector else ZeroVector
+        form = motion.known.get(c, LinearForm({}, ZeroVector))
+        result.force, result.form = c, form
+        result.Q = ZeroTensor
+        if motion.a_p in form.coefficients:
+            result.Q = book.define(
+                g.name("Q"), -form.coefficients[motion.a_p], r"\mathbf Q",
+                "inertia of the leg at the connection point, without the mass gathered there",
+                Law.RULES, unit="kg", body=frame, symmetric=True, reference="Eq. 4")
+        result.U = ZeroVector if form.remainder == ZeroVector else book.define(
+            g.name("U"), -form.remainder, r"\mathbf U",
+            "velocity and gravity terms of the leg force", Law.RULES, unit="N", body=frame,
+            reference="Eq. 4")
+        tip_force = result.tip_mass * a_tip if a_tip is not None else ZeroVector
+        result.true_force = c if tip_force == ZeroVector else book.define(
+            g.name("c_true"), c - tip_force, r"\mathbf c^*",
+            "leg force on the platform without actuation, the last link's mass included",
+            Law.NEWTON, unit="N", body=frame, reference="Eq. 3")
+
+    def _without_normals(self, force: Any) -> Any:
+        """The last link's inertia force without its part along the directions left out."""
+        body = self.k.tip_frame()
+        total = self.write.define(
+            "f_tip", force, r"\mathbf f_u", "inertia force of the last link less its weight",
+            Law.NEWTON, unit="N", coefficient_latex=r"\boldsymbol\Phi_u", body=body,
+            reference="Eq. 1")
+        along = vector_sum(Dot(n, total) * n for n in self.motion.normals)
+        return self.write.define(
+            "f_free", total - along, r"\mathbf f'_u",
+            "inertia force of the last link across the directions that the leg leaves out",
+            Law.REDUCTION, unit="N", coefficient_latex=r"\boldsymbol\Phi'_u", body=body,
+            reference="Eq. 35")
+
+    def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any], phi: Any) -> None:
+        """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""
+        g, motion = self.g, self.motion
+        row = gamma[j] - Dot(motion.v[j], self.G)
+        symbol = self.write.define(
+            f"P_{j}", row, rf"P_{{{j}}}",
+            f"inertia and weight of the leg along the extra freedom of joint {j}", Law.FREEDOM,
+            unit="N m" if g.turns(j) else "N", coefficient_latex=rf"\mathbf m_{{{j}}}",
+            reference="Eqs. 6, 7")
+        result.extra_rows[j] = (symbol, motion.known[symbol])
+        del phi

@@ -1,0 +1,475 @@
+"""Velocities and accelerations of a leg, and their linear forms in the platform's acceleration.
+
+Every quantity that depends on the acceleration of the platform is written three
+times: as it is (Eq. 3), and as coefficient times acceleration plus remainder
+(Eq. 4); the remainder carries the mark "o" and follows the same formula with the
+acceleration a_p (and those of extra coordinates) put to zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.mechanics.inverse_kinematics import InverseKinematics
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.platform_motion import PlatformMotion
+from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.vector import (
+    Compose,
+    Cross,
+    Dot,
+    LinearForm,
+    Skew,
+    TensorSymbol,
+    Vector,
+    VectorSymbol,
+    ZeroTensor,
+    ZeroVector,
+    linear_form,
+    vector_sum,
+)
+
+
+@dataclass
+class LegMotion:
+    """Symbols of a leg's motion, by joint number or group.
+
+    Attributes:
+        a_p: acceleration of the connection point without its centripetal part.
+        u_1: centripetal acceleration of the connection point.
+        S_ddot: acceleration of the connection point.
+        v: velocity vectors v_j of the joints at the connection point.
+        w: reciprocal vectors w_j (without extra joints).
+        normals: unit vectors that the leg's freedoms leave out.
+        qd, qdd: joint rates and accelerations.
+        omega, alpha: angular velocity and acceleration, by group.
+        spin: centripetal tensor omega~ omega~, by group.
+        acceleration_tensor: alpha~ + omega~ omega~, by group; same at zero.
+        reach: displacement within the group up to joint j's link origin.
+        span: from the group's joint to the next group's joint (or the tip).
+        known: linear forms of everything that depends on the acceleration.
+        unknowns: a_p and the accelerations of the extra coordinates.
+        ydd: accelerations of the extra coordinates, by joint.
+    """
+
+    a_p: Any = None
+    u_1: Any = None
+    S_ddot: Any = None
+    v: dict[int, Vector] = field(default_factory=dict)
+    w: dict[int, VectorSymbol] = field(default_factory=dict)
+    normals: list[Vector] = field(default_factory=list)
+    qd: dict[int, Any] = field(default_factory=dict)
+    qdd: dict[int, Any] = field(default_factory=dict)
+    omega: dict[int, Vector] = field(default_factory=dict)
+    alpha: dict[int, Vector] = field(default_factory=dict)
+    spin: dict[int, Any] = field(default_factory=dict)
+    acceleration_tensor: dict[int, Any] = field(default_factory=dict)
+    slide: dict[int, Vector] = field(default_factory=dict)
+    origin_acceleration: dict[int, Vector] = field(default_factory=dict)
+    known: dict[Any, LinearForm] = field(default_factory=dict)
+    unknowns: list[Any] = field(default_factory=list)
+    ydd: dict[int, Any] = field(default_factory=dict)
+
+
+class LinearWriter:
+    """Defines quantities that depend on the acceleration, with their linear forms."""
+
+    def __init__(self, book: Book, g: LegGeometry, motion: LegMotion) -> None:
+        self.book = book
+        self.g = g
+        self.motion = motion
+
+    def define(
+        self, stem: str, rhs: Any, latex: str, title: str, law: Law, *, unit: str,
+        coefficient_latex: str, body: str | None = None, forms: Sequence[Any] = (),
+        rest_forms: Sequence[Any] = (), reference: str = "",
+    ) -> Any:
+        """Define x = rhs, its coefficients and its remainder; returns x."""
+        book, g, motion = self.book, self.g, self.motion
+        name = g.name(stem)
+        form = linear_form(rhs, motion.unknowns, motion.known)
+        symbol = book.define(name, rhs, latex, title, law, unit=unit, body=body, forms=forms,
+                             reference=reference)
+        coefficients: dict[Any, Any] = {}
+        for k, (unknown, value) in enumerate(form.coefficients.items()):
+            if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
+                coefficients[unknown] = value
+                continue
+            first = unknown == motion.a_p
+            label = coefficient_latex if first else f"{latex}^{{({unknown.name})}}"
+            short = "d" if first else f"d{k}"
+            coefficients[unknown] = book.define(
+                f"{short}_{name}", value, label,
+                f"coefficient of the acceleration in: {title}", Law.RULES, body=body,
+                linear=form if first else None, expanded=rhs, reference="Sec. 2.3, Eq. 4",
+                unit=f"({unit})/(m/s^2)" if first else "",
+            )
+        remainder = form.remainder
+        if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
+            remainder = book.define(
+                f"{name}_o", remainder, f"{latex}^{{\\circ}}",
+                f"remainder without the acceleration in: {title}", Law.RULES, unit=unit, body=body,
+                forms=rest_forms, expanded=rhs, reference="Sec. 2.3, Eq. 4",
+            )
+        motion.known[symbol] = LinearForm(coefficients, remainder)
+        return symbol
+
+
+_RATES = (
+    "Each joint moves the connection point along v_j. The reciprocal vectors w_j, with "
+    "w_j . v_k = 1 for j = k and 0 otherwise, resolve its velocity into joint rates."
+)
+_ACCELERATIONS = (
+    "The bias is the acceleration that the connection point would have with all joint "
+    "accelerations zero. What depends on the acceleration of the platform is collected by "
+    "Rules I and II; a circle marks the remainder, the same formula at zero acceleration a_p."
+)
+
+
+class MotionWriter:
+    """Writes rates and accelerations of a leg."""
+
+    def __init__(
+        self, book: Book, g: LegGeometry, platform: PlatformMotion, space: TaskSpace,
+        inverse: InverseKinematics,
+    ) -> None:
+        self.book, self.g, self.p, self.space = book, g, platform, space
+        self.q = inverse.q
+        self.motion = LegMotion()
+
+    def write(self, prefix: str) -> LegMotion:
+        """Write the chapters on rates and accelerations."""
+        leg_type = self.g.leg_type
+        self.book.chapter(f"{prefix}-V", f"Rates of a {leg_type.architecture} leg", _RATES,
+                          leg_type.name)
+        self.velocity()
+        self.book.chapter(f"{prefix}-A", f"Accelerations of a {leg_type.architecture} leg",
+                          _ACCELERATIONS, leg_type.name)
+        self.acceleration()
+        return self.motion
+
+    # ---- positions along the chain -------------------------------------------------
+
+    def reach(self, j: int) -> Vector:
+        """From the origin of the group of link j to the origin of link j."""
+        g = self.g
+        first = g.group[j]
+        terms = [self._along(first)] if first and first in g.pitch else []
+        for i in range(first + 1, j + 1):
+            terms.extend((g.offset[i], self._along(i)))
+        return vector_sum(terms)
+
+    def _along(self, j: int) -> Vector:
+        g = self.g
+        if g.turns(j):
+            return self.q[j] * g.pitch[j] * g.e[j] if j in g.pitch else ZeroVector
+        return self.q[j] * g.e[j]
+
+    def span(self, group: int) -> Vector:
+        """From the origin of a group to the next group's joint, or to the connection point."""
+        last = max(j for j in self.g.group if self.g.group[j] == group)
+        return vector_sum((self.reach(last), self.g.offset[last + 1]))
+
+    def _rod(self, j: int, following: Vector) -> Vector:
+        """From the origin of turning joint j to the connection point."""
+        g = self.g
+        vector = vector_sum((self.spans[j], following))
+        if isinstance(vector, VectorSymbol) or vector == ZeroVector:
+            return vector
+        return self.book.define(
+            g.name(f"r_{j}"), vector, rf"\mathbf r_{{{j}}}",
+            f"from joint {j} to the connection point, along the links", Law.GEOMETRY, unit="m",
+            body=g.frame("axes", j))
+
+    # ---- rates -----------------------------------------------------------------------
+
+    def velocity(self) -> None:
+        g, book, p = self.g, self.book, self.p
+        self.S_dot = book.define(
+            g.name("S_dot"), p.t_dot + Cross(p.omega, g.platform_point), r"\dot{\mathbf S}",
+            "velocity of the connection point", Law.RATE, unit="m/s", reference="Sec. 2.5, step 1.1",
+            body="base")
+        turning = [j for j in range(1, g.count + 1) if g.turns(j)]
+        self.spans = {group: self.span(group) for group in [0, *turning]}
+        rods: dict[int, Vector] = {}
+        following: Vector = ZeroVector
+        for j in reversed(turning):
+            following = rods[j] = self._rod(j, following)
+        for j in range(1, g.count + 1):
+            self.motion.v[j] = self._velocity_vector(j, rods)
+        self._basis()
+        self._rates()
+
+    def _velocity_vector(self, j: int, rods: dict[int, Vector]) -> Vector:
+        g = self.g
+        if not g.turns(j):
+            return g.e[j]
+        vector = Cross(g.e[j], rods[j])
+        if j in g.pitch:
+            vector = vector + g.pitch[j] * g.e[j]
+        return self.book.define(
+            g.name(f"v_{j}"), vector, rf"\mathbf v_{{{j}}}",
+            f"velocity of the connection point per rate of joint {j}", Law.RATE, unit="m",
+            body=self.tip_frame(), reference="Sec. 7.1 of the method: joint columns")
+
+    def tip_frame(self) -> str:
+        """Canonical frame of the last link."""
+        return self.g.frame("axes", self.g.group[self.g.count])
+
+    def _basis(self) -> None:
+        """Reciprocal vectors; directions that the freedoms leave out complete the basis."""
+        g, motion = self.g, self.motion
+        joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
+        vectors: list[Any] = [motion.v[j] for j in joints]
+        scales: list[Any] = [g.size if g.turns(j) else sp.S.One for j in joints]
+        missing = (2 if self.space.planar else 3) - len(joints)
+        if missing < 0:
+            raise ValueError("more freedoms than coordinates: mark joints as extra")
+        for k, normal in enumerate(self._left_out(joints, missing), 1):
+            motion.normals.append(normal)
+            vectors.append(normal)
+            scales.append(sp.S.One)
+            del k
+        names = [*(f"w_{j}" for j in joints), *(f"wn_{k + 1}" for k in range(missing))]
+        latexes = [*(rf"\mathbf w_{{{j}}}" for j in joints),
+                   *(rf"\mathbf w_{{c{k + 1}}}" for k in range(missing))]
+        duals = self._define_duals(vectors, names, latexes)
+        motion.w = dict(zip(joints, duals, strict=False))
+        frames = tuple(dict.fromkeys(
+            g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
+        self.book.bases.append(ReciprocalBasis(
+            g.leg_type.name, tuple(vectors), tuple(duals), tuple(scales), frames))
+
+    def _define_duals(self, vectors: list[Any], names: list[str], latexes: list[str]) -> list[Any]:
+        book, g = self.book, self.g
+        duals = []
+        planar = len(vectors) == 2
+        if planar:
+            normal = next(g.e[j] for j in range(1, g.count + 1) if g.turns(j))
+            others = [(vectors[1], normal), (normal, vectors[0])]
+        else:
+            others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
+        for k, vector in enumerate(vectors):
+            across = Cross(*others[k])
+            duals.append(book.define(
+                g.name(names[k]), across / Dot(vector, across), latexes[k],
+                f"reciprocal vector {k + 1}: w . v = 1 for its own joint, 0 for the others",
+                Law.RECIPROCITY, body=self.tip_frame(), reference="Sec. 7.3 of the method"))
+        return duals
+
+    def _left_out(self, joints: list[int], missing: int) -> list[Vector]:
+        """Unit vectors perpendicular to all velocity vectors of the leg."""
+        if missing == 0:
+            return []
+        from pne_sym.mechanics.constraints import directions_left_out
+
+        return directions_left_out(self.book, self.g, self.motion, joints, missing,
+                                   self.space.planar)
+
+    def _rates(self) -> None:
+        g, book, motion = self.g, self.book, self.motion
+        extras = [j for j in range(1, g.count + 1) if g.is_extra(j)]
+        target: Vector = self.S_dot
+        for j in extras:
+            name = g.name(f"yd_{j}")
+            book.note_quantity(Quantity(name, rf"\dot y_{{{j}}}", f"rate of extra joint {j}",
+                                        "rad/s" if g.turns(j) else "m/s"))
+            motion.qd[j] = sp.Symbol(name, real=True)
+            target = target - motion.qd[j] * motion.v[j]
+        if extras:
+            target = book.define(
+                g.name("S_dot_rest"), target, r"\dot{\mathbf S}'",
+                "velocity of the connection point left to the joints that are not extra",
+                Law.RATE, unit="m/s")
+        for j, dual in motion.w.items():
+            motion.qd[j] = book.define(
+                g.name(f"qd_{j}"), Dot(dual, target), rf"\dot q_{{{j}}}", f"rate of joint {j}",
+                Law.RECIPROCITY, unit="rad/s" if g.turns(j) else "m/s")
+        self._angular_velocities()
+
+    def _angular_velocities(self) -> None:
+        g, book, motion = self.g, self.book, self.motion
+        motion.omega[0], motion.spin[0] = ZeroVector, ZeroTensor
+        motion.slide[0] = self._slide_velocity(0)
+        for j in self.spans:
+            if j == 0:
+                continue
+            previous = motion.omega[g.group[j - 1]]
+            frame = g.frame("axes", j)
+            motion.omega[j] = book.define(
+                g.name(f"omega_{j}"), previous + motion.qd[j] * g.e[j],
+                rf"\boldsymbol\omega_{{{j}}}", f"angular velocity of link {j}", Law.RATE,
+                unit="rad/s", body=frame)
+            motion.spin[j] = book.define(
+                g.name(f"W_{j}"), Compose(Skew(motion.omega[j]), Skew(motion.omega[j])),
+                rf"\mathbf W_{{{j}}}", f"centripetal tensor of link {j}", Law.DEFINITION,
+                unit="1/s^2", body=frame, symmetric=True)
+            motion.slide[j] = self._slide_velocity(j)
+
+    def _slide_velocity(self, group: int) -> Vector:
+        """Velocity of sliding within a group."""
+        g = self.g
+        terms = []
+        for j in range(1, g.count + 1):
+            if g.group[j] == group and (not g.turns(j) or j in g.pitch):
+                terms.append(self.motion.qd[j] * g.pitch.get(j, 1) * g.e[j])
+        return vector_sum(terms)
+
+    # ---- accelerations ---------------------------------------------------------------
+
+    def acceleration(self) -> None:
+        g, book, p, motion = self.g, self.book, self.p, self.motion
+        q = g.platform_point
+        motion.u_1 = ZeroVector
+        if self.space.rotates:
+            motion.u_1 = book.define(
+                g.name("u_1"), Cross(p.omega, Cross(p.omega, q)), r"\mathbf u_1",
+                "centripetal acceleration of the connection point", Law.RATE, unit="m/s^2",
+                body="base", forms=(p.spin @ q,), reference="Eq. 23")
+        motion.a_p = book.define(
+            g.name("a_p"), p.t_ddot + Cross(p.alpha, q), r"\mathbf a_p",
+            "acceleration of the connection point without its centripetal part", Law.RATE,
+            unit="m/s^2", body="base", reference="Eq. 23")
+        motion.unknowns.append(motion.a_p)
+        writer = LinearWriter(book, g, motion)
+        motion.S_ddot = book.define(
+            g.name("S_ddot"), motion.a_p + motion.u_1, r"\ddot{\mathbf S}",
+            "acceleration of the connection point", Law.RATE, unit="m/s^2", body="base",
+            reference="Eq. 23")
+        motion.known[motion.S_ddot] = linear_form(
+            motion.a_p + motion.u_1, motion.unknowns, motion.known)
+        bias = self._bias()
+        self._joint_accelerations(writer, bias)
+        self._angular_accelerations(writer)
+        self._origin_accelerations(writer)
+
+    def _bias(self) -> Vector:
+        """Acceleration of the connection point at zero joint accelerations."""
+        g, book, motion = self.g, self.book, self.motion
+        self.coriolis: dict[int, Vector] = {0: ZeroVector}
+        beta: dict[int, Vector] = {0: ZeroVector}
+        terms: list[Vector] = []
+        forms: list[Vector] = []
+        for j in self.spans:
+            if j:
+                previous = g.group[j - 1]
+                turned = motion.qd[j] * Cross(motion.omega[previous], g.e[j])
+                if turned != ZeroVector:
+                    turned = book.define(
+                        g.name(f"zeta_{j}"), turned, rf"\boldsymbol\zeta_{{{j}}}",
+                        f"angular acceleration of link {j} from the turning of axis {j}", Law.RATE,
+                        unit="rad/s^2", body=g.frame("axes", j))
+                self.coriolis[j] = turned
+                beta[j] = self._named_sum(f"beta_{j}", beta[previous] + turned,
+                                          rf"\boldsymbol\beta_{{{j}}}",
+                                          f"angular acceleration of link {j} at zero joint "
+                                          f"accelerations", g.frame("axes", j))
+            span, omega = self.spans[j], motion.omega[j]
+            centripetal = Cross(beta[j], span) + Cross(omega, Cross(omega, span))
+            coriolis = 2 * Cross(omega, motion.slide[j])
+            terms.extend((centripetal, coriolis))
+            tensor = Skew(beta[j]) + motion.spin[j]
+            forms.extend((tensor @ span if tensor != ZeroTensor else ZeroVector, coriolis))
+        total = vector_sum(terms)
+        if total == ZeroVector:
+            return ZeroVector
+        return book.define(
+            g.name("bias"), total, r"\mathfrak b",
+            "acceleration of the connection point at zero joint accelerations", Law.RATE,
+            unit="m/s^2", body=self.tip_frame(), forms=(vector_sum(forms),),
+            reference="Sec. 7.2 of the method")
+
+    def _named_sum(self, stem: str, value: Vector, latex: str, title: str, frame: str) -> Vector:
+        if value == ZeroVector or isinstance(value, VectorSymbol):
+            return value
+        return self.book.define(self.g.name(stem), value, latex, title, Law.RATE,
+                                unit="rad/s^2", body=frame)
+
+    def _joint_accelerations(self, writer: LinearWriter, bias: Vector) -> None:
+        g, book, motion = self.g, self.book, self.motion
+        target: Vector = motion.S_ddot - bias
+        for j in [j for j in range(1, g.count + 1) if g.is_extra(j)]:
+            name = g.name(f"ydd_{j}")
+            book.note_quantity(Quantity(name, rf"\ddot y_{{{j}}}",
+                                        f"acceleration of extra joint {j}",
+                                        "rad/s^2" if g.turns(j) else "m/s^2"))
+            motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
+            motion.unknowns.append(motion.ydd[j])
+            target = target - motion.ydd[j] * motion.v[j]
+        if target != motion.S_ddot:
+            target = writer.define(
+                "rel", target, r"\ddot{\mathbf S}'",
+                "acceleration of the connection point left to the joint accelerations",
+                Law.RATE, unit="m/s^2", coefficient_latex=r"\mathbf E", body=self.tip_frame())
+        for j, dual in motion.w.items():
+            motion.qdd[j] = writer.define(
+                f"qdd_{j}", Dot(dual, target), rf"\ddot q_{{{j}}}", f"acceleration of joint {j}",
+                Law.RECIPROCITY, unit="rad/s^2" if g.turns(j) else "m/s^2",
+                coefficient_latex=rf"\mathbf w_{{{j}}}", reference="Eqs. 8, 9, 16")
+
+    def _angular_accelerations(self, writer: LinearWriter) -> None:
+        g, book, motion = self.g, self.book, self.motion
+        motion.alpha[0] = ZeroVector
+        motion.acceleration_tensor[0] = (ZeroTensor, ZeroTensor)
+        for j in self.spans:
+            if j == 0:
+                continue
+            previous = motion.alpha[g.group[j - 1]]
+            frame = g.frame("axes", j)
+            rhs = previous + motion.qdd[j] * g.e[j] + self.coriolis[j]
+            motion.alpha[j] = writer.define(
+                f"alpha_{j}", rhs, rf"\boldsymbol\alpha_{{{j}}}",
+                f"angular acceleration of link {j}", Law.RATE, unit="rad/s^2",
+                coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}", body=frame)
+            tensors = []
+            rest = motion.known[motion.alpha[j]].remainder
+            for mark, alpha in (("", motion.alpha[j]), ("_o", rest)):
+                circle = r"^{\circ}" if mark else ""
+                tensors.append(book.define(
+                    g.name(f"B_{j}") + mark, Skew(alpha) + motion.spin[j],
+                    rf"\mathbf B{circle}_{{{j}}}",
+                    f"acceleration tensor of link {j}: alpha x r + omega x (omega x r) = B r",
+                    Law.DEFINITION, unit="1/s^2", body=frame))
+            motion.acceleration_tensor[j] = (tensors[0], tensors[1])
+
+    def point_acceleration(self, group: int, reach: Vector, slides: Sequence[int]) -> Any:
+        """Acceleration of a point of a group: (rhs, form, form of the remainder)."""
+        g, motion = self.g, self.motion
+        omega = motion.omega[group]
+        origin = motion.origin_acceleration[group]
+        rest = motion.known[origin].remainder if origin in motion.known else origin
+        velocity = vector_sum(motion.qd[i] * g.pitch.get(i, 1) * g.e[i] for i in slides)
+        coriolis = 2 * Cross(omega, velocity)
+        sliding = vector_sum(motion.qdd[i] * g.pitch.get(i, 1) * g.e[i] for i in slides)
+        sliding_rest = vector_sum(
+            motion.known[motion.qdd[i]].remainder * g.pitch.get(i, 1) * g.e[i]
+            if motion.qdd[i] in motion.known else ZeroVector for i in slides)
+        centripetal = Cross(motion.alpha[group], reach) + Cross(omega, Cross(omega, reach))
+        tensor, tensor_rest = motion.acceleration_tensor[group]
+        return (
+            vector_sum((origin, centripetal, coriolis, sliding)),
+            vector_sum((origin, tensor @ reach, coriolis, sliding)),
+            vector_sum((rest, tensor_rest @ reach, coriolis, sliding_rest)),
+        )
+
+    def _origin_accelerations(self, writer: LinearWriter) -> None:
+        """Accelerations of the groups' origins, outwards (the last link is seen from the tip)."""
+        g, motion = self.g, self.motion
+        order = list(self.spans)
+        motion.origin_acceleration[order[0]] = ZeroVector
+        for previous, j in zip(order, order[1:], strict=False):
+            slides = [i for i in range(1, g.count + 1) if g.group[i] == previous
+                      and (not g.turns(i) or i in g.pitch)]
+            rhs, form, rest = self.point_acceleration(previous, self.spans[previous], slides)
+            if rhs == ZeroVector or isinstance(rhs, VectorSymbol):
+                motion.origin_acceleration[j] = rhs
+                continue
+            motion.origin_acceleration[j] = writer.define(
+                f"a_o{j}", rhs, rf"\mathbf a_{{o{j}}}", f"acceleration of the origin of joint {j}",
+                Law.RATE, unit="m/s^2", coefficient_latex=rf"\mathbf V_{{{j}}}",
+                body=g.frame("axes", previous), forms=(form,), rest_forms=(rest,))

@@ -1,0 +1,349 @@
+"""Newton-Euler of the platform with the legs' forces, and assembly of M, Z, H.
+
+Reference: section 2.4, Eqs. 5 to 7 and 32 to 34.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Book, Law, Output
+from pne_sym.mechanics.leg_dynamics import LegDynamics
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.leg_motion import LegMotion
+from pne_sym.mechanics.platform_motion import PlatformMotion
+from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.vector import (
+    Axial,
+    Compose,
+    Cross,
+    Dot,
+    Identity,
+    Outer,
+    Skew,
+    TensorSymbol,
+    Transpose,
+    Vector,
+    ZeroTensor,
+    ZeroVector,
+    linear_form,
+    sum_over_legs,
+    tensor_sum,
+    vector_sum,
+)
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Everything written about one leg type."""
+
+    g: LegGeometry
+    motion: LegMotion
+    dynamics: LegDynamics
+
+    @property
+    def name(self) -> str:
+        """Name of the leg type."""
+        return self.g.leg_type.name
+
+
+_LUMPED = (
+    "The mass of each leg's last link, gathered at the connection point, moves with the platform "
+    "and is counted with it; this changes no force that the platform sees."
+)
+_PLATFORM = (
+    "Newton's and Euler's equations of the platform with the legs' forces; moments about the "
+    "platform origin."
+)
+
+
+class PlatformWriter:
+    """Writes the platform's equations and the blocks of M, Z, H."""
+
+    def __init__(self, book: Book, space: TaskSpace, platform: PlatformMotion,
+                 legs: list[Leg]) -> None:
+        self.book, self.space, self.p, self.legs = book, space, platform, legs
+
+    def total(self, pick: Callable[[Leg], Any], start: Any) -> Any:
+        """A quantity plus its sum over the legs of all types."""
+        for leg in self.legs:
+            value = pick(leg)
+            if value != 0 and value not in (ZeroVector, ZeroTensor):
+                start = start + sum_over_legs(value, leg.name)
+        return start
+
+    def lump(self) -> None:
+        """Platform inertia with the gathered masses."""
+        book, p = self.book, self.p
+        book.chapter("L", "Platform inertia with the masses gathered at the connection points",
+                     _LUMPED)
+        R = p.centre
+
+        def point_inertia(mass: Any, r: Vector) -> Any:
+            return mass * (Dot(r, r) * Identity - Outer(r, r))
+
+        self.mass = book.define(
+            "m_star", self.total(lambda leg: leg.dynamics.tip_mass, p.mass), r"M^*",
+            "mass of the platform with the gathered masses", Law.LUMPING, unit="kg",
+            parameter=True)
+        self.moment = book.define(
+            "h_star", self.total(lambda leg: leg.dynamics.tip_mass * leg.g.platform_point,
+                                 p.mass * R), r"\mathbf h^*",
+            "first moment about the platform origin", Law.LUMPING, unit="kg m", body="platform",
+            parameter=True)
+        inertia = p.inertia + point_inertia(p.mass, R)
+        self.inertia = book.define(
+            "J_star", self.total(
+                lambda leg: point_inertia(leg.dynamics.tip_mass, leg.g.platform_point)
+                if leg.dynamics.tip_mass != 0 else ZeroTensor, inertia), r"\mathbf J^*",
+            "inertia tensor about the platform origin", Law.LUMPING, unit="kg m^2",
+            body="platform", parameter=True, symmetric=True)
+
+    def equilibrium(self) -> None:
+        """Eq. 3 route: the generalised force that actuators and wrench must give."""
+        book, p, space = self.book, self.p, self.space
+        book.chapter("E", "Equilibrium of the platform", _PLATFORM)
+        h, omega, alpha = self.moment, p.omega, p.alpha
+        self.n_newton = self.n_euler = None
+        if space.translates:
+            rhs = self.mass * (p.t_ddot - p.gravity) + Cross(alpha, h) + Cross(omega, Cross(omega, h))
+            self.n_newton = book.define(
+                "f_p", rhs, r"\mathbf f_p", "inertia force of the platform less its weight",
+                Law.NEWTON, unit="N", body="base", reference="Eq. 32",
+                forms=self._tensor_form_newton())
+        if space.rotates:
+            self.n_euler = book.define(
+                "mu_p",
+                vector_sum((Cross(h, p.t_ddot - p.gravity), self.inertia @ alpha,
+                            Cross(omega, self.inertia @ omega))),
+                r"\boldsymbol\mu_p", "inertia moment of the platform less that of its weight",
+                Law.EULER, unit="N m", body="platform", reference="Eq. 33")
+        self._required()
+
+    def _tensor_form_newton(self) -> tuple[Any, ...]:
+        if not self.space.rotates:
+            return ()
+        tensor = Skew(self.p.alpha) + self.p.spin
+        return (self.mass * (self.p.t_ddot - self.p.gravity) + tensor @ self.moment,)
+
+    def _required(self) -> None:
+        """What H tau plus the external wrench must equal."""
+        book = self.book
+        components = self.space.components
+        if self.n_newton is not None:
+            force = book.define(
+                "R_t", self.total(lambda leg: -leg.dynamics.force, self.n_newton),
+                r"\mathbf R_t", "force that actuators and external wrench must give",
+                Law.ASSEMBLY, unit="N", body="base", reference="Eq. 32")
+            self._vector_output("required", force, 0)
+        if self.n_euler is not None:
+            moment = book.define(
+                "R_a", self.total(lambda leg: -Cross(leg.g.platform_point, leg.dynamics.force),
+                                  self.n_euler),
+                r"\mathbf R_\alpha", "moment that actuators and external wrench must give",
+                Law.ASSEMBLY, unit="N m", body="base", reference="Eq. 33")
+            self._vector_output("required", moment, 3)
+        del components
+        for leg, j, rows in self._extras():
+            self._leg_scalar("required", leg, leg.dynamics.extra_rows[j][0], rows)
+
+    # ---- blocks of M, Z, H -----------------------------------------------------------
+
+    def blocks(self) -> None:
+        """Eq. 4 route: M, Z, H."""
+        self.book.chapter("M", "M, Z and H", _BLOCKS)
+        self._mass_blocks()
+        self._bias_blocks()
+        self._extra_blocks()
+        self._columns()
+
+    def _mass_blocks(self) -> None:
+        book, p, space = self.book, self.p, self.space
+        if space.translates:
+            tt = book.define(
+                "M_tt", self.total(lambda leg: leg.dynamics.Q, self.mass * Identity),
+                r"\mathbf M_{tt}", "translational block of M", Law.ASSEMBLY, unit="kg", body="base",
+                symmetric=True, reference="Eq. 34")
+            self._tensor_output("M", tt, 0, 0, symmetric=True)
+        if not space.rotates:
+            return
+        if space.translates:
+            form = linear_form(Cross(p.alpha, self.moment), [p.alpha])
+            coupling = self.total(
+                lambda leg: -Compose(leg.dynamics.Q, Skew(leg.g.platform_point))
+                if leg.dynamics.Q != ZeroTensor else ZeroTensor, form.coefficients[p.alpha])
+            ta = book.define(
+                "M_ta", coupling, r"\mathbf M_{t\alpha}", "coupling block of M", Law.RULES,
+                unit="kg m", body="base", linear=form, expanded=Cross(p.alpha, self.moment),
+                reference="Eq. 34")
+            self._tensor_output("M", ta, 0, 3, mirrored=True)
+
+        def rotary(leg: Leg) -> Any:
+            if leg.dynamics.Q == ZeroTensor:
+                return ZeroTensor
+            arm = Skew(leg.g.platform_point)
+            return -Compose(arm, Compose(leg.dynamics.Q, arm))
+
+        aa = book.define(
+            "M_aa", self.total(rotary, self.inertia), r"\mathbf M_{\alpha\alpha}",
+            "rotational block of M", Law.ASSEMBLY, unit="kg m^2", body="base", symmetric=True,
+            reference="Eq. 34")
+        self._tensor_output("M", aa, 3, 3, symmetric=True)
+
+    def _bias_blocks(self) -> None:
+        book, p, space = self.book, self.p, self.space
+        h, omega = self.moment, p.omega
+        if space.translates:
+            rest = Cross(omega, Cross(omega, h)) - self.mass * p.gravity
+            forms = (p.spin @ h - self.mass * p.gravity,) if space.rotates else ()
+            base = book.define(
+                "Z_p", rest, r"\mathbf Z_p",
+                "centripetal force and weight of the platform", Law.NEWTON, unit="N", body="base",
+                forms=forms, reference="Eq. 34")
+            zt = book.define(
+                "Z_t", self.total(lambda leg: leg.dynamics.U, base), r"\mathbf Z_t",
+                "translational part of Z", Law.ASSEMBLY, unit="N", body="base", reference="Eq. 34")
+            self._vector_output("Z", zt, 0)
+        if space.rotates:
+            base = book.define(
+                "Z_q", Cross(omega, self.inertia @ omega) - Cross(h, p.gravity), r"\mathbf Z_q",
+                "gyroscopic moment and moment of the weight of the platform", Law.EULER,
+                unit="N m", body="platform", reference="Eq. 34")
+            za = book.define(
+                "Z_a", self.total(lambda leg: Cross(leg.g.platform_point, leg.dynamics.U), base),
+                r"\mathbf Z_\alpha", "rotational part of Z", Law.ASSEMBLY, unit="N m",
+                body="base", reference="Eq. 34")
+            self._vector_output("Z", za, 3)
+
+    def _extra_blocks(self) -> None:
+        """Rows and columns of the extra coordinates (Eqs. 6, 7)."""
+        book = self.book
+        for leg, j, rows in self._extras():
+            form = leg.dynamics.extra_rows[j][1]
+            q, motion, g = leg.g.platform_point, leg.motion, leg.g
+            coefficient = form.coefficients.get(motion.a_p, ZeroVector)
+            self._leg_scalar("Z", leg, form.remainder, rows)
+            if coefficient != ZeroVector:
+                self._leg_vector("M", leg, coefficient, 0, leg_rows=rows)
+                if self.space.rotates:
+                    arm = book.define(
+                        g.name(f"M_ya_{j}"), Cross(q, coefficient), rf"\mathbf M_{{y\alpha,{j}}}",
+                        f"coupling of extra joint {j} with the rotation of the platform",
+                        Law.ASSEMBLY, body="base", reference="Eqs. 6, 7")
+                    self._leg_vector("M", leg, arm, 3, leg_rows=rows)
+            for k, unknown in motion.ydd.items():
+                if k >= j and unknown in form.coefficients:
+                    columns = self._extra_rows_of(leg, k)
+                    self.book.outputs.append(Output(
+                        "M", form.coefficients[unknown], ((0, 0),), ((0, 0),), leg.name, rows,
+                        columns, mirrored=k != j))
+
+    def _extra_rows_of(self, leg: Leg, j: int) -> tuple[int, ...]:
+        return next(rows for other, k, rows in self._extras() if other is leg and k == j)
+
+    def _extras(self) -> list[tuple[Leg, int, tuple[int, ...]]]:
+        """Extra joints with the rows of their coordinates, per leg."""
+        start = len(self.space.components)
+        order = sorted(
+            (index, j) for leg in self.legs for index in leg.g.leg_type.indices
+            for j in leg.motion.ydd)
+        row = {key: start + k for k, key in enumerate(order)}
+        return [
+            (leg, j, tuple(row[(index, j)] for index in leg.g.leg_type.indices))
+            for leg in self.legs for j in leg.motion.ydd
+        ]
+
+    def _columns(self) -> None:
+        """Columns of H: the reciprocal vectors of driven joints, and their moments."""
+        order = sorted(
+            (index, j) for leg in self.legs for index in leg.g.leg_type.indices
+            for j, joint in enumerate(leg.g.leg_type.model.joints, 1) if joint.actuated)
+        column = {key: k for k, key in enumerate(order)}
+        for leg in self.legs:
+            for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
+                if joint.actuated:
+                    places = tuple(column[(i, j)] for i in leg.g.leg_type.indices)
+                    self._column(leg, j, places)
+        self._constraint_columns()
+
+    def _column(self, leg: Leg, j: int, places: tuple[int, ...]) -> None:
+        motion, book, g = leg.motion, self.book, leg.g
+        if j in motion.w:
+            w: Any = motion.w[j]
+            self._force_column("H", leg, w, f"H_a_{j}", rf"\mathbf H_{{\alpha,{j}}}", places)
+            book.outputs.append(Output(
+                "drive", w, tuple((c, c) for c in range(3)), ((0, 0),), leg.name, (),
+                places))
+        for k, other, rows in self._extras():
+            if k is not leg:
+                continue
+            value = sp.S.One if other == j else (
+                -Dot(motion.w[j], motion.v[other]) if j in motion.w else sp.S.Zero)
+            if value != 0:
+                book.outputs.append(Output(
+                    "H", value, ((0, 0),), ((0, 0),), leg.name, rows, places))
+        del g
+
+    def _force_column(self, array: str, leg: Leg, w: Any, stem: str, latex: str,
+                      places: tuple[int, ...]) -> None:
+        if self.space.translates:
+            self._leg_vector(array, leg, w, 0, leg_columns=places)
+        if self.space.rotates:
+            moment = self.book.define(
+                leg.g.name(stem), Cross(leg.g.platform_point, w), latex,
+                f"moment of the unit force of column {stem} about the platform origin",
+                Law.ASSEMBLY, unit="m", body="base", reference="Eq. 34")
+            self._leg_vector(array, leg, moment, 3, leg_columns=places)
+
+    def _constraint_columns(self) -> None:
+        """Columns of Hk: the directions that legs leave out (Eq. 36)."""
+        order = sorted((index, k) for leg in self.legs for index in leg.g.leg_type.indices
+                       for k in range(len(leg.motion.normals)))
+        column = {key: c for c, key in enumerate(order)}
+        for leg in self.legs:
+            for k, normal in enumerate(leg.motion.normals):
+                places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
+                self._force_column("Hk", leg, normal, f"Hk_a_{k + 1}",
+                                   rf"\mathbf H_{{k\alpha,{k + 1}}}", places)
+
+    # ---- placing ---------------------------------------------------------------------
+
+    def _places(self, first: int) -> tuple[tuple[int, int], ...]:
+        """(component, position) of the linear (0) or angular (3) components."""
+        return tuple((c - first, position) for position, c in enumerate(self.space.components)
+                     if first <= c < first + 3)
+
+    def _vector_output(self, array: str, value: Any, first: int) -> None:
+        self.book.outputs.append(Output(array, value, self._places(first)))
+
+    def _tensor_output(self, array: str, value: Any, row: int, column: int, *,
+                       mirrored: bool = False, symmetric: bool = False) -> None:
+        self.book.outputs.append(Output(
+            array, value, self._places(row), self._places(column), mirrored=mirrored,
+            symmetric=symmetric))
+
+    def _leg_vector(self, array: str, leg: Leg, value: Any, first: int, *,
+                    leg_rows: tuple[int, ...] = (), leg_columns: tuple[int, ...] = ()) -> None:
+        if leg_rows:  # laid along a row of M, and its mirror
+            self.book.outputs.append(Output(
+                array, value, ((0, 0),), self._places(first), leg.name, leg_rows, (),
+                mirrored=True))
+        else:
+            self.book.outputs.append(Output(
+                array, value, self._places(first), ((0, 0),), leg.name, (), leg_columns))
+
+    def _leg_scalar(self, array: str, leg: Leg, value: Any, rows: tuple[int, ...]) -> None:
+        self.book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
+
+
+_BLOCKS = (
+    "With each leg's force in the form h tau - Q a_p - U, the coefficients of the platform's "
+    "acceleration are the blocks of M, the rest is Z, and the reciprocal vectors of the driven "
+    "joints are the columns of H."
+)
+
+__all__ = ["Axial", "Leg", "PlatformWriter", "TensorSymbol", "Transpose", "tensor_sum"]

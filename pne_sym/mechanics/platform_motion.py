@@ -1,0 +1,155 @@
+"""Pose, twist and acceleration of the platform, gravity, and its inertia."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
+from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.vector import (
+    Compose,
+    Skew,
+    TensorSymbol,
+    Vector,
+    VectorSymbol,
+    ZeroTensor,
+    ZeroVector,
+)
+
+
+@dataclass(frozen=True)
+class PlatformMotion:
+    """Symbols of the platform's motion and of gravity.
+
+    Attributes:
+        t, t_dot, t_ddot: position, velocity, acceleration of the origin.
+        omega, alpha: angular velocity and acceleration.
+        gravity: acceleration of gravity.
+        spin: omega~ omega~, the tensor of centripetal acceleration.
+        mass: platform mass (scalar).
+        centre: platform origin to centre of mass.
+        inertia: tensor about the centre of mass.
+    """
+
+    t: Vector
+    t_dot: Vector
+    t_ddot: Vector
+    omega: Vector
+    alpha: Vector
+    gravity: Vector
+    spin: Any
+    mass: Any
+    centre: Vector
+    inertia: Any
+
+
+def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -> PlatformMotion:
+    """Introduce what is given of the platform, and the tensor of its spin."""
+    book.frames.append(Frame("base", None))
+    rotation = _rotation(space)
+    book.frames.append(Frame("platform", "base", rotation))
+    vectors = _motion(book, manipulator, space)
+    spin: Any = ZeroTensor
+    book.chapter("P", "Platform motion", _TEXT)
+    if space.rotates:
+        spin = book.define(
+            "W_p", Compose(Skew(vectors["omega"]), Skew(vectors["omega"])),
+            r"\mathbf W_p", "centripetal tensor of the platform: omega x (omega x r) = W_p r",
+            Law.DEFINITION, unit="1/s^2", body="base", symmetric=True,
+        )
+    mass, centre, inertia = _inertia(book, manipulator, space)
+    return PlatformMotion(
+        vectors["t"], vectors["t_dot"], vectors["t_ddot"], vectors["omega"], vectors["alpha"],
+        vectors["g"], spin, mass, centre, inertia,
+    )
+
+
+_TEXT = (
+    "The platform's pose gives its origin and its rotation matrix; velocities and accelerations "
+    "are those of the origin, angular velocity and acceleration are seen in base axes."
+)
+
+
+def _rotation(space: TaskSpace) -> tuple[Any, ...]:
+    if not space.rotates:
+        return tuple(sp.Integer(int(v)) for v in np.eye(3).ravel())
+    names = [[sp.Symbol(f"R_{a}{b}", real=True) for b in "xyz"] for a in "xyz"]
+    if space.planar:
+        c, s = names[0][0], names[1][0]
+        return (c, -s, 0, s, c, 0, 0, 0, 1)
+    return tuple(entry for row in names for entry in row)
+
+
+def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str, Vector]:
+    axes = "xyz"
+    given: dict[str, Vector] = {}
+
+    def give(stem: str, latex: str, meaning: str, unit: str, active: bool, first: int) -> None:
+        if not active:
+            given[stem] = ZeroVector
+            return
+        components = [
+            sp.Symbol(f"{stem}_{axes[i]}", real=True) if first + i in space.components else sp.S.Zero
+            for i in range(3)
+        ]
+        symbol = VectorSymbol(stem)
+        given[stem] = book.give(symbol, "base", components,
+                                Quantity(stem, latex, meaning, unit, "base"))
+
+    linear, angular = space.translates, space.rotates
+    if linear:
+        give("t", r"\mathbf t", "position of the platform origin", "m", True, 0)
+    else:
+        centre = book.parameters.add(ParameterField(
+            "fixed_centre", None, (3,), "m", "fixed centre of rotation, base frame",
+            ("fixed_centre",), np.array(manipulator.fixed_centre, dtype=float)))
+        given["t"] = book.give(VectorSymbol("t"), "base", centre, Quantity(
+            "t", r"\mathbf t", "fixed centre of rotation", "m", "base", parameter=True))
+    give("t_dot", r"\dot{\mathbf t}", "velocity of the platform origin", "m/s", linear, 0)
+    give("t_ddot", r"\ddot{\mathbf t}", "acceleration of the platform origin", "m/s^2", linear, 0)
+    give("omega", r"\boldsymbol\omega", "angular velocity of the platform", "rad/s", angular, 3)
+    give("alpha", r"\boldsymbol\alpha", "angular acceleration of the platform", "rad/s^2", angular, 3)
+    gravity = book.parameters.add(ParameterField(
+        "gravity", None, (3,), "m/s^2", "acceleration of gravity, base frame", ("gravity",),
+        np.array(manipulator.gravity, dtype=float), (2,) if space.planar else ()))
+    given["g"] = book.give(VectorSymbol("g"), "base", gravity, Quantity(
+        "g", r"\mathbf g", "acceleration of gravity", "m/s^2", "base", parameter=True))
+    return given
+
+
+def _inertia(book: Book, manipulator: Manipulator, space: TaskSpace) -> tuple[Any, Any, Any]:
+    platform, table = manipulator.platform, book.parameters
+    (mass,) = table.add(ParameterField(
+        "platform_mass", None, (), "kg", "mass of the platform", ("platform.mass",),
+        np.array(platform.mass)))
+    centre = table.add(ParameterField(
+        "platform_centre_of_mass", None, (3,), "m", "centre of mass, platform frame",
+        ("platform.centre_of_mass",), np.array(platform.centre_of_mass, dtype=float),
+        (2,) if space.planar else ()))
+    book.note_quantity(Quantity("platform_mass", "M_p", "mass of the platform", "kg",
+                                parameter=True))
+    R = book.give(VectorSymbol("R"), "platform", centre, Quantity(
+        "R", r"\mathbf R", "platform origin to centre of mass", "m", "platform", parameter=True))
+    entries = table.add(ParameterField(
+        "platform_inertia", None, (3, 3), "kg m^2",
+        "inertia tensor about the centre of mass, platform axes", ("platform.inertia",),
+        np.array(platform.inertia, dtype=float)))
+    inertia = book.give(
+        TensorSymbol("I_p", True), "platform", symmetric_entries(entries, space.planar),
+        Quantity("I_p", r"\mathbf I_p", "inertia tensor of the platform about its centre of mass",
+                 "kg m^2", "platform", parameter=True))
+    return mass, R, inertia
+
+
+def symmetric_entries(entries: tuple[Any, ...], planar: bool) -> tuple[Any, ...]:
+    """The nine entries of a symmetric tensor by its upper triangle; in the plane only izz."""
+    xx, xy, xz, _, yy, yz, _, _, zz = entries
+    if planar:
+        zero = sp.S.Zero
+        return (zero, zero, zero, zero, zero, zero, zero, zero, zz)
+    return (xx, xy, xz, xy, yy, yz, xz, yz, zz)
