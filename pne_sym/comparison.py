@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pne_sym.writer import check_names, readable_errors
+from pne_sym.writer import MODEL_NAME, check_names, is_generated, readable_errors
 
 _NOT_PRODUCT = frozenset({"__pycache__"})
 
@@ -68,6 +68,17 @@ def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Differen
                 diff = _unified_diff(out / path, found, files[file])
                 differences.append(Difference(path, DifferenceKind.CHANGED, diff))
     return differences
+
+
+def models_in(out: Path) -> list[str]:
+    """The names of the models that stand in an output folder, sorted.
+
+    Raises:
+        OutputError: the folder cannot be read.
+    """
+    with readable_errors(out, "read"):
+        names = [path.name for path in out.iterdir() if path.is_dir() and is_generated(path)]
+    return sorted(name for name in names if MODEL_NAME.fullmatch(name))
 
 
 def _unified_diff(path: Path, found: bytes, expected: str) -> str:

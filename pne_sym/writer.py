@@ -58,7 +58,7 @@ def write_model(out: Path, name: str, files: Mapping[str, str]) -> Path:
     with readable_errors(folder), _created(out), _locked(out):
         place = _Place(folder)
         place.settle()
-        _refuse_foreign(folder, name, content)
+        _refuse_foreign(folder)
         is_new = all(path.name.startswith(".") for path in out.iterdir())
         try:
             _write_folder(place.new, content)
@@ -86,6 +86,15 @@ def check_output(out: Path) -> None:
             raise OutputError(f"cannot write {out}: {nearest} is not a folder")
         if not os.access(nearest, os.W_OK | os.X_OK):
             raise OutputError(f"cannot write {out}: no permission to write in {nearest}")
+
+
+def is_generated(folder: Path) -> bool:
+    """Whether this package wrote a model's folder.
+
+    Its manifest tells; or, where that was lost or has the marks of a merge
+    conflict, the header of a file: then too the remedy is to generate again.
+    """
+    return _has_manifest(folder) or any(map(_has_header, folder.glob(f"{folder.name}.*")))
 
 
 class _Place:
@@ -164,35 +173,29 @@ def _locked(out: Path) -> Iterator[None]:
         os.close(descriptor)
 
 
-def _refuse_foreign(folder: Path, name: str, content: Mapping[str, bytes]) -> None:
+def _refuse_foreign(folder: Path) -> None:
     """Refuse to replace what this package did not write."""
     if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
         raise OutputError(
             f"cannot write {folder}: it is not a folder; remove it or use another --out"
         )
-    if not folder.exists() or not any(folder.iterdir()):
-        return
-    if not (_has_manifest(folder, name) or any(_has_header(folder / file) for file in content)):
+    if folder.exists() and any(folder.iterdir()) and not is_generated(folder):
         raise OutputError(
             f"refusing to replace {folder}: pne-gen did not write it "
-            f"(it has no manifest {name}.json); remove it or use another --out"
+            f"(it has no manifest {folder.name}.json); remove it or use another --out"
         )
 
 
-def _has_manifest(folder: Path, name: str) -> bool:
+def _has_manifest(folder: Path) -> bool:
     """Whether the folder has a manifest that names this package."""
     with contextlib.suppress(OSError, ValueError):
-        manifest = json.loads((folder / f"{name}.json").read_bytes())
+        manifest = json.loads((folder / f"{folder.name}.json").read_bytes())
         return isinstance(manifest, dict) and GENERATOR in str(manifest.get("generator"))
     return False
 
 
 def _has_header(path: Path) -> bool:
-    """Whether a file says that this package wrote it.
-
-    So a folder is known as ours also where the manifest was lost or has the
-    marks of a merge conflict: then too the remedy is to generate it again.
-    """
+    """Whether a file says that this package wrote it."""
     with contextlib.suppress(OSError), path.open("rb") as stream:
         return _HEADER.search(stream.read(_HEADER_BYTES)) is not None
     return False

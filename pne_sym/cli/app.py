@@ -155,7 +155,9 @@ def check(
     sources: Annotated[
         list[str] | None,
         typer.Argument(
-            metavar="NAME_OR_SPEC", help="Default: the whole catalogue.", show_default=False
+            metavar="NAME_OR_SPEC",
+            show_default=False,
+            help="Default: every model that stands in DIR. all: the whole catalogue.",
         ),
     ] = None,
     out: Out = DEFAULT_OUT,
@@ -169,7 +171,7 @@ def check(
     1: it differs; the differences are shown, and the command that mends them.
     """
     with told(debug=debug):
-        wanted = sources or list(_catalogue())
+        wanted = _wanted(sources or [], out)
         if not _check(wanted, _find(wanted), out, jobs=jobs, report=Report(quiet=quiet)):
             raise typer.Exit(DIFFERENT)
 
@@ -178,6 +180,25 @@ def _catalogue() -> tuple[str, ...]:
     from pne_sym import manipulators  # noqa: PLC0415
 
     return manipulators.names()
+
+
+def _wanted(sources: Sequence[str], out: Path) -> Sequence[str]:
+    """What `check` compares: what is named, or what stands there."""
+    from pne_sym.generation import InputError  # noqa: PLC0415
+
+    if "all" in sources:
+        return _catalogue()
+    if sources:
+        return tuple(dict.fromkeys(sources))
+    found = comparison.models_in(out)
+    if not found:
+        raise InputError(f"no generated model stands in {out}; name what should")
+    if unknown := sorted(set(found) - set(_catalogue())):
+        raise InputError(
+            f"{out / unknown[0]} is of no model in the catalogue; name its spec file, "
+            "and the other models to check"
+        )
+    return found
 
 
 def _find(sources: Sequence[str]) -> list[Manipulator]:

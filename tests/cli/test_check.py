@@ -13,17 +13,41 @@ from tests.cli.test_generate import own_spec
 
 @pytest.fixture
 def out(tmp_path: Path) -> Path:
-    """An output folder in which the whole catalogue is up to date."""
+    """An output folder in which two models of the catalogue are up to date."""
     folder = tmp_path / "with space"
-    assert pne_gen("all", "--out", folder).returncode == 0
+    assert pne_gen("stewart", "delta", "--out", folder).returncode == 0
     return folder
 
 
-def test_up_to_date(out: Path) -> None:
-    done = pne_gen("check", "stewart", "--out", out)
-    assert (done.returncode, done.stdout) == (0, f"up to date: {out}/stewart\n")
-    assert pne_gen("check", "--out", out).returncode == 0
-    assert pne_gen("check", "--out", out, "--quiet").stdout == ""
+@pytest.mark.parametrize("names", [("stewart",), ("stewart", "stewart"), ("delta", "stewart"), ()])
+def test_up_to_date(names: tuple[str, ...], out: Path) -> None:
+    done = pne_gen("check", *names, "--out", out)
+    told = "".join(
+        f"up to date: {out}/{name}\n" for name in sorted(set(names)) or ("delta", "stewart")
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, told, "")
+    assert pne_gen("check", *names, "--out", out, "--quiet").stdout == ""
+
+
+def test_all_stands_for_the_whole_catalogue(out: Path) -> None:
+    done = pne_gen("check", "all", "--out", out)
+    assert done.returncode == 1
+    assert f"missing: {out}/delta/delta.py" not in done.stdout
+    assert f"missing: {out}/hexaglide/hexaglide.py" in done.stdout
+
+
+def test_without_names_something_must_stand_there(tmp_path: Path) -> None:
+    (tmp_path / "notes").mkdir()
+    done = pne_gen("check", "--out", tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "no generated model stands in" in done.stderr
+
+
+def test_without_names_a_model_of_no_known_spec_is_not_passed_over(out: Path) -> None:
+    pne_gen(own_spec(out), "--out", out)
+    done = pne_gen("check", "--out", out)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert f"{out}/my_robot is of no model in the catalogue" in done.stderr
 
 
 def test_a_changed_file_is_shown_as_a_unified_diff(out: Path) -> None:

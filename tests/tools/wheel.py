@@ -1,7 +1,7 @@
 """Build the sdist, the wheel from it, and use the wheel as a user would.
 
 The wheel is installed into an empty environment and run from a folder outside
-the repository; what it generates must be what stands in `generated/`.
+the repository; the model that it generates must be the one in `generated/`.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ import zipfile
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+MODEL = "stewart"
 
 
 def main() -> None:
@@ -30,9 +31,8 @@ def main() -> None:
         venv.create(folder / "env", with_pip=True)
         scripts = folder / "env" / ("Scripts" if os.name == "nt" else "bin")
         _run(scripts / "python", "-m", "pip", "install", "--quiet", wheel, cwd=folder)
-        for path in sorted((REPOSITORY / "generated").glob("*/*.json")):
-            _run(scripts / "pne-gen", path.stem, "--out", folder / "generated", cwd=folder)
-            _check_same(path.parent, folder / "generated" / path.stem)
+        _run(scripts / "pne-gen", MODEL, "--out", folder / "generated", cwd=folder)
+        _check_same(REPOSITORY / "generated" / MODEL, folder / "generated" / MODEL)
         print("the wheel works outside the repository and writes what stands in generated/")
 
 
