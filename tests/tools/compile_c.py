@@ -18,6 +18,7 @@ WARNINGS = "-Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wdouble-promotion -W
 C_FLAGS = ["-std=c99", "-O2", *WARNINGS]
 CXX_FLAGS = ["-std=c++11", "-Wall", "-Wextra", "-Wpedantic", "-Werror"]
 COMPILERS = (("gcc", "g++"), ("clang", "clang++"))
+OBJECT = "model.o"
 CALLER = """#include "{name}.h"
 #include "{name}.h"
 int main() {{
@@ -39,45 +40,32 @@ def main(folder: Path) -> int:
         for tool in missing:
             print(f"\n*** NOT RUN: check-c with {tool}: not installed ***\n", file=sys.stderr)
             failures += os.environ.get("CI") == "true"
+        if compiler in missing:
+            continue
         for source in sources:
-            if compiler not in missing:
-                failures += not _compile(compiler, source)
-                if cxx not in missing:
-                    failures += not _link_from_cxx(compiler, cxx, source)
+            with tempfile.TemporaryDirectory() as build:
+                passed = _compile(compiler, source, Path(build)) and (
+                    cxx in missing or _link_from_cxx(cxx, source, Path(build))
+                )
+            failures += not passed
     return 1 if failures else 0
 
 
-def _compile(compiler: str, source: Path) -> bool:
-    """Compile as double and as float."""
+def _compile(compiler: str, source: Path, build: Path) -> bool:
+    """Compile as float, then as double, which is what stays in `build`."""
     real = f"-D{source.stem.upper()}_REAL=float"
     return all(
-        _run([compiler, *C_FLAGS, *extra, "-c", str(source), "-o", os.devnull])
-        for extra in ([], [real])
+        _run([compiler, *C_FLAGS, *extra, "-c", str(source), "-o", str(build / OBJECT)])
+        for extra in ([real], [])
     )
 
 
-def _link_from_cxx(compiler: str, cxx: str, source: Path) -> bool:
-    """Include the header from C++, twice, and link and run a call of the C object."""
-    with tempfile.TemporaryDirectory() as temporary:
-        build = Path(temporary)
-        caller, program, compiled = build / "caller.cpp", build / "caller", build / "model.o"
-        caller.write_text(CALLER.format(name=source.stem))
-        return (
-            _run([compiler, *C_FLAGS, "-c", str(source), "-o", str(compiled)])
-            and _run(
-                [
-                    cxx,
-                    *CXX_FLAGS,
-                    f"-I{source.parent}",
-                    str(caller),
-                    str(compiled),
-                    "-lm",
-                    "-o",
-                    str(program),
-                ]
-            )
-            and _run([str(program)])
-        )
+def _link_from_cxx(cxx: str, source: Path, build: Path) -> bool:
+    """Include the header from C++, twice; link and run a call of the C object."""
+    caller, program = build / "caller.cpp", build / "caller"
+    caller.write_text(CALLER.format(name=source.stem))
+    inputs = [f"-I{source.parent}", str(caller), str(build / OBJECT), "-lm"]
+    return _run([cxx, *CXX_FLAGS, *inputs, "-o", str(program)]) and _run([str(program)])
 
 
 def _run(command: list[str]) -> bool:
