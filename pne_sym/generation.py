@@ -9,6 +9,7 @@ PosixPath('generated/stewart')
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -114,9 +115,11 @@ def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator
         yield from (Compiled(item, compile_model(item)) for item in todo)
         return
     context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(jobs, mp_context=context, initializer=_ignore_interrupts)
+    pool = ProcessPoolExecutor(jobs, mp_context=context)
     try:
-        for outcome in pool.map(_compile_in_worker, todo):
+        with _interrupts_held():
+            outcomes = pool.map(_compile_in_worker, todo)  # starts the workers
+        for outcome in outcomes:
             yield outcome.result()
     except BaseException:
         # Nobody waits for the rest: the workers only compute, they write nothing.
@@ -161,9 +164,18 @@ def _compile_in_worker(manipulator: Manipulator) -> _Outcome:
     return _Outcome(compiled, tuple((str(each.message), each.category) for each in caught))
 
 
-def _ignore_interrupts() -> None:
-    """Leave Ctrl-C to the parent process, which ends the workers."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+@contextlib.contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold back Ctrl-C; processes started meanwhile never get it.
+
+    The terminal sends it to every process.  The parent ends the workers; did
+    they get it too, each would end with a traceback of its own.
+    """
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _is_path(text: str) -> bool:

@@ -105,7 +105,8 @@ def test_debug_shows_the_traceback_of_an_internal_error(tmp_path: Path) -> None:
 def test_an_unknown_option(tmp_path: Path) -> None:
     done = pne_gen("stewart", "--ouput", tmp_path)
     assert done.returncode == 2
-    assert "No such option: --ouput" in done.stderr
+    assert "No such option" in done.stderr
+    assert "--ouput" in done.stderr
 
 
 def test_no_model_at_all(tmp_path: Path) -> None:
