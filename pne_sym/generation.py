@@ -57,8 +57,8 @@ def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
         SpecError: no such model (the message has the nearest names), or the
             spec file is at fault.
     """
-    from pne_sym import manipulators  # noqa: PLC0415
-    from pne_sym.model.reader import read_spec  # noqa: PLC0415
+    from pne_sym import manipulators
+    from pne_sym.model.reader import read_spec
 
     if not isinstance(source, str | os.PathLike):
         return source
@@ -77,7 +77,7 @@ def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLik
         SpecError: the source is at fault.
         OutputError: the folder cannot be written.
     """
-    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+    from pne_sym.pipeline import compile_model
 
     manipulator = find(source)
     return writer.write_model(Path(out), manipulator.name, compile_model(manipulator))
@@ -95,7 +95,7 @@ def check(
         SpecError: the source is at fault.
         OutputError: the folder cannot be read.
     """
-    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+    from pne_sym.pipeline import compile_model
 
     manipulator = find(source)
     return comparison.check_model(Path(out), manipulator.name, compile_model(manipulator))
@@ -107,7 +107,7 @@ def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator
     Raises:
         SpecError, InputError: a manipulator is outside the method.
     """
-    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+    from pne_sym.pipeline import compile_model
 
     todo = tuple(manipulators)
     jobs = min(jobs, len(todo))
@@ -150,8 +150,8 @@ class _Outcome:
 
 
 def _compile_in_worker(manipulator: Manipulator) -> _Outcome:
-    from pne_sym.model.errors import SpecError  # noqa: PLC0415
-    from pne_sym.pipeline import compile_model  # noqa: PLC0415
+    from pne_sym.model.errors import SpecError
+    from pne_sym.pipeline import compile_model
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

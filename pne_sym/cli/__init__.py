@@ -20,8 +20,8 @@ def main(argv: Sequence[str] | None = None) -> None:
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
-        from pne_sym.cli.app import app  # noqa: PLC0415 - an interruption here is told too
-        from pne_sym.cli.console import prepare_streams, print_error  # noqa: PLC0415
+        from pne_sym.cli.app import app
+        from pne_sym.cli.console import prepare_streams, print_error
 
         prepare_streams()
         word = unavailable(arguments)

@@ -60,7 +60,7 @@ class _ModelsCommand(typer.core.TyperCommand):
 
 def _version(wanted: bool) -> None:
     if wanted:
-        from importlib.metadata import version  # noqa: PLC0415
+        from importlib.metadata import version
 
         typer.echo(f"pne-gen {version('pne-sym')}")
         raise typer.Exit
@@ -177,14 +177,14 @@ def check(
 
 
 def _catalogue() -> tuple[str, ...]:
-    from pne_sym import manipulators  # noqa: PLC0415
+    from pne_sym import manipulators
 
     return manipulators.names()
 
 
 def _wanted(sources: Sequence[str], out: Path) -> Sequence[str]:
     """What `check` compares: what is named, or what stands there."""
-    from pne_sym.generation import InputError  # noqa: PLC0415
+    from pne_sym.generation import InputError
 
     if "all" in sources:
         return _catalogue()
@@ -203,7 +203,7 @@ def _wanted(sources: Sequence[str], out: Path) -> Sequence[str]:
 
 def _find(sources: Sequence[str]) -> list[Manipulator]:
     """Read every source before any work, so that a fault in the last costs nothing."""
-    from pne_sym.generation import InputError, find  # noqa: PLC0415
+    from pne_sym.generation import InputError, find
 
     found: dict[str, str] = {}
     models = []
@@ -217,7 +217,7 @@ def _find(sources: Sequence[str]) -> list[Manipulator]:
 
 
 def _generate(models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report) -> None:
-    from pne_sym.generation import compile_many  # noqa: PLC0415
+    from pne_sym.generation import compile_many
 
     with report.progress(len(models)) as step:
         step.working_on(_names(models))
@@ -232,7 +232,7 @@ def _check(
     sources: Sequence[str], models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report
 ) -> bool:
     """Report every difference; return whether there is none."""
-    from pne_sym.generation import compile_many  # noqa: PLC0415
+    from pne_sym.generation import compile_many
 
     differing = []
     with report.progress(len(models)) as step:

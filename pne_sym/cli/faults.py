@@ -31,8 +31,8 @@ def told(*, debug: bool) -> Iterator[None]:
     Raises:
         typer.Exit: with the exit code, for any error.
     """
-    from pne_sym.generation import InputError  # noqa: PLC0415
-    from pne_sym.model.errors import SpecError, SpecWarning  # noqa: PLC0415
+    from pne_sym.generation import InputError
+    from pne_sym.model.errors import SpecError, SpecWarning
 
     try:
         with warnings.catch_warnings():
@@ -75,7 +75,7 @@ def _show_warning(
     line: str | None = None,
 ) -> None:
     """Print a warning in one line; one that is not about the input with its class."""
-    from pne_sym.model.errors import SpecWarning  # noqa: PLC0415
+    from pne_sym.model.errors import SpecWarning
 
     del filename, lineno, file, line
     print_warning(
