@@ -4,6 +4,7 @@ from pne_sym.derivation.book import Book
 from pne_sym.derivation.equation import (
     Chapter,
     Condition,
+    Coordinates,
     Derivation,
     Equation,
     Frame,
@@ -22,6 +23,7 @@ __all__ = [
     "Book",
     "Chapter",
     "Condition",
+    "Coordinates",
     "Derivation",
     "Equation",
     "Frame",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -10,6 +11,7 @@ import sympy as sp
 from pne_sym.derivation.equation import (
     Chapter,
     Condition,
+    Coordinates,
     Derivation,
     Equation,
     Frame,
@@ -19,6 +21,7 @@ from pne_sym.derivation.equation import (
     Output,
     Quantity,
     ReciprocalBasis,
+    names_in,
 )
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
@@ -35,6 +38,7 @@ class Book:
         self.parameters = ParameterTable()
         self.outputs: list[Output] = []
         self.leg_types: list[LegTypeInfo] = []
+        self.coordinates: Coordinates | None = None
         self._chapters: list[tuple[str, str, str | None, str, list[Equation]]] = []
 
     def chapter(self, id_: str, title: str, text: str, leg_type: str | None = None) -> None:
@@ -109,15 +113,41 @@ class Book:
         """The equations of the chapter that is being written."""
         return tuple(self._chapters[-1][4])
 
+    def all_equations(self) -> Iterator[Equation]:
+        """All equations written so far."""
+        for *_, equations in self._chapters:
+            yield from equations
+
+    def _needed(self) -> set[str]:
+        """Names that the outputs need, through right-hand sides, forms and conditions."""
+        definitions = {e.name: e for *_, equations in self._chapters for e in equations}
+        frames = [v for f in self.frames for v in (*(f.axes or ()), *(f.rows or ()), *(f.angle or ()))]
+        frames += [v for basis in self.bases for v in (*basis.vectors, *basis.scales)]
+        needed: set[str] = set()
+        stack = [n for v in [*(o.value for o in self.outputs), *frames] for n in names_in(v)]
+        while stack:
+            name = stack.pop()
+            if name in needed:
+                continue
+            needed.add(name)
+            if name in definitions:
+                equation = definitions[name]
+                parts = [equation.rhs, *equation.forms,
+                         *(x for c in equation.conditions for x in (c.value, c.scale))]
+                stack.extend(n for part in parts for n in names_in(part))
+        return needed
+
     def close(self) -> Derivation:
-        """The finished derivation; empty chapters are left out."""
-        chapters = tuple(
-            Chapter(id_, title, leg_type, text, tuple(equations))
-            for id_, title, leg_type, text, equations in self._chapters
-            if equations
-        )
+        """The finished derivation; equations that nothing needs are left out."""
+        needed = self._needed()
+        chapters = []
+        for id_, title, leg_type, text, equations in self._chapters:
+            kept = [e for e in equations if e.name in needed]
+            numbered = tuple(replace(e, id=f"{id_}{k}") for k, e in enumerate(kept, 1))
+            if numbered:
+                chapters.append(Chapter(id_, title, leg_type, text, numbered))
         return Derivation(
-            chapters,
+            tuple(chapters),
             dict(self.notation),
             tuple(self.bases),
             tuple(self.givens),
@@ -125,4 +155,5 @@ class Book:
             self.parameters,
             tuple(self.outputs),
             tuple(self.leg_types),
+            self.coordinates,
         )

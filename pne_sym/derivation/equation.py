@@ -234,6 +234,54 @@ class LegTypeInfo:
 
 
 @dataclass(frozen=True)
+class Coordinates:
+    """Names and order of everything that goes in and comes out.
+
+    Attributes:
+        space: name of the task space.
+        pose: names of the platform coordinates in X.
+        rates: names of the platform's entries in V and A.
+        wrench: names of the entries of a wrench.
+        components: which of the six twist components the rates are.
+        planar: everything happens in the plane z = 0.
+        joints: (leg, joint) of every entry of q, counted from 0.
+        actuators: (leg, joint) of every entry of tau, counted from 0.
+        extras: (leg, joint) of the extra coordinates, counted from 0.
+        constraints: leg of every entry of lambda.
+        turning: for every entry of q whether it is an angle.
+        home: X and q at home.
+    """
+
+    space: str
+    pose: tuple[str, ...]
+    rates: tuple[str, ...]
+    wrench: tuple[str, ...]
+    components: tuple[int, ...]
+    planar: bool
+    joints: tuple[tuple[int, int], ...]
+    actuators: tuple[tuple[int, int], ...]
+    extras: tuple[tuple[int, int], ...]
+    constraints: tuple[int, ...]
+    turning: tuple[bool, ...]
+    home: tuple[tuple[float, ...], tuple[float, ...]]
+
+    @property
+    def has_quaternion(self) -> bool:
+        """Whether the orientation is given by a quaternion."""
+        return "qw" in self.pose
+
+    @property
+    def sizes(self) -> dict[str, int]:
+        """NQ, NV, NU, NC, NW, NJ: sizes of X, V, tau, lambda, wrench, q."""
+        extra = len(self.extras)
+        return {
+            "NQ": len(self.pose) + extra, "NV": len(self.rates) + extra,
+            "NU": len(self.actuators), "NC": len(self.constraints), "NW": len(self.wrench),
+            "NJ": len(self.joints),
+        }
+
+
+@dataclass(frozen=True)
 class Chapter:
     """A run of equations on one subject.
 
@@ -265,6 +313,7 @@ class Derivation:
         parameters: the live parameters.
         outputs: what the generated code returns.
         leg_types: the leg types, in order of first appearance.
+        coordinates: names and order of what goes in and comes out.
     """
 
     chapters: tuple[Chapter, ...]
@@ -275,6 +324,7 @@ class Derivation:
     parameters: ParameterTable = field(default_factory=ParameterTable)
     outputs: tuple[Output, ...] = ()
     leg_types: tuple[LegTypeInfo, ...] = ()
+    coordinates: Coordinates | None = None
 
     def equations(self) -> Iterator[Equation]:
         """All equations in order."""

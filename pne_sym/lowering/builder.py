@@ -60,6 +60,7 @@ class Builder:
         self.live: set[sp.Symbol] = set()
         self.equation = ""
         self.leg_counts: dict[str, int] = {}
+        self.signs: set[sp.Symbol] = set()
 
     # ---- symbols ---------------------------------------------------------------------
 
@@ -68,6 +69,10 @@ class Builder:
         self._stage[symbol] = stage
         self._names.add(symbol.name)
         return symbol
+
+    def is_declared(self, symbol: sp.Symbol) -> bool:
+        """Whether a symbol is known."""
+        return symbol in self._stage
 
     def stage_of(self, expr: Any) -> Stage:
         """Stage at which an expression can be computed."""
@@ -90,13 +95,16 @@ class Builder:
             return expr
         if expr.is_Mul and len(expr.args) == 2 and expr.args[0] == -1 and expr.args[1].is_Symbol:
             return expr
-        if expr.could_extract_minus_sign():
-            return -self.let(-expr, hint, named=named)
-        known = self._value.get(expr)
+        sign = -1 if expr.could_extract_minus_sign() else 1
+        key = sign * expr
+        known = self._value.get(key)
         if known is not None:
-            return known
-        stage = self.stage_of(expr)
-        return self._record(expr, stage, hint, named)
+            return sign * known
+        if not hint:  # only what has a name keeps its sign: names do not lie
+            return sign * self._record(key, self.stage_of(expr), hint, named)
+        symbol = self._record(expr, self.stage_of(expr), hint, named, key=key)
+        self._value[key] = sign * symbol
+        return symbol
 
     def _record(self, expr: Any, stage: Stage, hint: str, named: bool,
                 total_of: str | None = None, key: Any = None) -> sp.Symbol:
@@ -141,7 +149,34 @@ class Builder:
 
     def add(self, terms: Iterable[Atom], hint: str = "", *, named: bool = False) -> Atom:
         """Sum of atoms."""
-        return self.let(sp.Add(*terms), hint, named=named)
+        total = sp.Add(*terms)
+        return self.let(self._opened(total), hint, named=named)
+
+    def _opened(self, total: Any) -> Any:
+        """The sum with named sums in it opened, where terms then cancel."""
+        if not total.is_Add or len(total.args) > 6:
+            return total
+        opened = total
+        for term in total.args:
+            sign, symbol = (-1, -term) if term.could_extract_minus_sign() else (1, term)
+            made = self.of.get(symbol)
+            if made is not None and made.expr.is_Add and not made.total_of:
+                opened = opened - term + sign * made.expr
+        best: Any = total
+        for term in total.args:
+            sign, symbol = (-1, -term) if term.could_extract_minus_sign() else (1, term)
+            made = self.of.get(symbol)
+            if made is not None and made.expr.is_Add and not made.total_of:
+                one = total - term + sign * made.expr
+                if _terms_of(one) < _terms_of(best):
+                    best = one
+        return opened if _terms_of(opened) < _terms_of(best) else best
+
+    def difference(self, a: Atom, b: Atom) -> Atom:
+        """a - b; of two named sums only what does not cancel."""
+        terms = [t for atom, sign in ((a, 1), (b, -1)) for t in self._terms(atom, sign)]
+        total = sp.Add(*terms)
+        return self.let(total if _terms_of(total) <= 2 else a - b)
 
     def mul(self, a: Atom, b: Atom, hint: str = "", *, named: bool = False) -> Atom:
         """Product of atoms; x/b times b is x."""
@@ -149,6 +184,10 @@ class Builder:
             return sp.S.Zero
         if a.is_Number or b.is_Number:
             return self.let(a * b, hint, named=named)
+        if a == b:
+            square = self._square_of_root(a)
+            if square is not None:
+                return square
         sign = 1
         if a.is_Mul:
             a, sign = -a, -sign
@@ -160,6 +199,22 @@ class Builder:
         if cancelled is None:
             cancelled = self.let(a * b, hint, named=named)
         return sign * cancelled
+
+    def _square_of_root(self, a: Atom) -> Atom | None:
+        """x for a = sign sqrt(x)."""
+        made = self.of.get(a)
+        if made is None or made.total_of:
+            return None
+        factors = made.expr.args if made.expr.is_Mul else (made.expr,)
+        radicands = []
+        for factor in factors:
+            if factor in self.signs:
+                continue
+            source = self.of[factor].expr if factor in self.of else factor
+            if not (source.is_Pow and source.exp == sp.Rational(1, 2)):
+                return None
+            radicands.append(source.base)
+        return radicands[0] if len(radicands) == 1 else None
 
     def _cancel(self, a: sp.Symbol, b: sp.Symbol) -> Atom | None:
         """a b where a is made of 1/b, or b is 1/x and a is made of x; None if neither."""
@@ -202,23 +257,23 @@ class Builder:
         if b.is_Mul:
             return -self.divide(a, -b, hint, named=named)
         inverse = self.inverse(b)
-        terms = self._terms(a)
+        terms = [inner for term in self._terms(a) for inner in self._terms(term)]
         quotients = [self._quotient(term, b) for term in terms]
         if len(terms) > 1 and any(q is not None for q in quotients):
-            parts = [self.mul(t, inverse) if q is None else q
-                     for t, q in zip(terms, quotients, strict=True)]
-            return self.add(parts, hint, named=named)
+            rest = self.add([t for t, q in zip(terms, quotients, strict=True) if q is None])
+            cancelled = [q for q in quotients if q is not None]
+            return self.add([self.mul(rest, inverse), *cancelled], hint, named=named)
         return self.mul(a, inverse, hint, named=named)
 
-    def _terms(self, a: Atom) -> list[Atom]:
-        """Terms of a sum, opening sums that were named on the way (two levels)."""
+    def _terms(self, a: Atom, outer: int = 1) -> list[Atom]:
+        """Terms of a named sum, with a sign; the atom itself where it is none."""
         if a.is_Number:
-            return [a]
-        sign, symbol = (-1, -a) if a.is_Mul else (1, a)
+            return [outer * a]
+        sign, symbol = (-1, -a) if a.could_extract_minus_sign() else (1, a)
         made = self.of.get(symbol)
         if made is None or made.total_of or not made.expr.is_Add:
-            return [a]
-        return [sign * term for term in made.expr.args]
+            return [outer * a]
+        return [outer * sign * term for term in made.expr.args]
 
     def _quotient(self, term: Any, b: sp.Symbol) -> Atom | None:
         """term / b if the factor b is visible in the term."""
@@ -277,6 +332,12 @@ class Builder:
             found[symbol] = self.of[symbol]
             stack.extend(self.of[symbol].expr.free_symbols)
         return list(found.values())
+
+
+def _terms_of(expr: Any) -> int:
+    """Number of terms of a sum, each numeric factor other than a sign counted too."""
+    terms = sp.Add.make_args(expr)
+    return len(terms) + sum(abs(t.as_coeff_Mul()[0]) != 1 for t in terms) if expr != 0 else 0
 
 
 def operations(expr: Any) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pne_sym.derivation import Book, Derivation, Law, LegTypeInfo, Output
+from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
@@ -14,7 +14,7 @@ from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
-from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.vector import Dot, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
 
 
@@ -36,7 +36,26 @@ def derive(manipulator: Manipulator) -> Derivation:
     writer.equilibrium()
     writer.blocks()
     _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
+    book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
     return book.close()
+
+
+def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) -> Coordinates:
+    """Names and order of what goes in and comes out."""
+    joints = [(i, j, joint) for i, leg in enumerate(manipulator.legs)
+              for j, joint in enumerate(leg.joints)]
+    constraints = sorted(
+        index for leg in legs for index in leg.g.leg_type.indices for _ in leg.motion.normals)
+    return Coordinates(
+        space=manipulator.space.value, pose=space.pose_names, rates=space.rate_names,
+        wrench=space.wrench_names, components=space.components, planar=space.planar,
+        joints=tuple((i, j) for i, j, _ in joints),
+        actuators=tuple((i, j) for i, j, joint in joints if joint.actuated),
+        extras=tuple((i, j) for i, j, joint in joints if joint.extra),
+        constraints=tuple(constraints),
+        turning=tuple(joint.kind is not JointKind.PRISMATIC for *_, joint in joints),
+        home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
+    )
 
 
 def _derive_leg(

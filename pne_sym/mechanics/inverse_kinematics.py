@@ -49,12 +49,14 @@ class InverseKinematics:
         methods: joint -> "linear", "sphere", "direct", "given" or "numeric".
         reasons: why a joint has no closed form.
         branches: roots whose sign is that of home.
+        x: from the origin of a joint to the connection point, seen from the base.
     """
 
     q: dict[int, Any]
     methods: dict[int, str]
     reasons: dict[int, str]
     branches: list[Branch]
+    x: dict[int, Vector]
 
     @property
     def is_closed(self) -> bool:
@@ -73,7 +75,7 @@ def invert(book: Book, g: LegGeometry, x: Vector) -> InverseKinematics:
     solver = _Solver(book, g)
     for j in range(1, g.count + 1):
         x = solver.joint(j, x)
-    return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches)
+    return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches, solver.x)
 
 
 class _Solver:
@@ -84,10 +86,12 @@ class _Solver:
         self.methods: dict[int, str] = {}
         self.reasons: dict[int, str] = {}
         self.branches: list[Branch] = []
+        self.x: dict[int, Vector] = {}
 
     def joint(self, j: int, x: Vector) -> Vector:
         """Find joint j; returns the vector from joint j+1's origin to the connection point."""
         g = self.g
+        self.x[j] = x
         if g.is_extra(j):
             x = self._given(j, x)
         elif g.turns(j):

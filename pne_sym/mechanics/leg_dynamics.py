@@ -211,6 +211,7 @@ class DynamicsWriter:
         omega, alpha = motion.omega[group], motion.alpha[group]
         moments = [Cross(b.first_moment, relative[b.joint]) for b in members]
         tensor, tensor_rest = motion.acceleration_tensor[group]
+        gathered = self._gathered_moments(members, relative)
         rest_moments = [Cross(b.first_moment, self.rest(relative[b.joint])) for b in members]
         return self.write.define(
             f"mu_{group}",
@@ -218,9 +219,46 @@ class DynamicsWriter:
             rf"\boldsymbol\mu_{{{group}}}",
             f"inertia moment of the links that turn with link {group}, about their reference points",
             Law.EULER, unit="N m", coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}", body=frame,
-            forms=(vector_sum((Axial(Compose(tensor, second)), *moments)),),
-            rest_forms=(vector_sum((Axial(Compose(tensor_rest, second)), *rest_moments)),),
+            forms=(vector_sum((Axial(Compose(tensor, second)), *moments)),
+                   *(vector_sum((Axial(Compose(tensor, second)), *gathered[0]))
+                     for _ in gathered[:1])),
+            rest_forms=(vector_sum((Axial(Compose(tensor_rest, second)), *rest_moments)),
+                        *(vector_sum((Axial(Compose(tensor_rest, second)), *gathered[1]))
+                          for _ in gathered[:1])),
             reference="Eq. 2")
+
+    def _gathered_moments(self, members: list[LinkBody], relative: dict[int, Any]) -> Any:
+        """The moments h x (a - g) with gravity taken out once: (terms, terms at rest) or ()."""
+        g, gravity = self.g, self.p.gravity
+        if len(members) < 2:
+            return ()
+        accelerations = {b.joint: self._without_gravity(relative[b.joint]) for b in members}
+        if any(a is None for a in accelerations.values()):
+            return ()
+        total = self.book.define(
+            g.name(f"h_group_{members[0].group}"), vector_sum(b.first_moment for b in members),
+            rf"\mathbf h^\Sigma_{{{members[0].group}}}",
+            f"first moments of the links that turn with link {members[0].group}", Law.LUMPING,
+            unit="kg m", body=g.frame("axes", members[0].group), parameter=True)
+        weight = -Cross(total, gravity)
+        return tuple(
+            [weight, *(Cross(b.first_moment, accelerations[b.joint][k]) for b in members)]
+            for k in (0, 1))
+
+    def _without_gravity(self, relative: Any) -> tuple[Any, Any] | None:
+        """Acceleration and its remainder, where the relative one is a named difference."""
+        if relative == -self.p.gravity:
+            return ZeroVector, ZeroVector
+        equation = next((e for e in self.book.all_equations() if e.lhs == relative), None)
+        if equation is None:
+            return None
+        terms = [t for t in getattr(equation.rhs, "args", ()) if t != -self.p.gravity]
+        if equation.rhs == -self.p.gravity:
+            return ZeroVector, ZeroVector
+        plain = vector_sum(terms) if len(terms) == 1 else None
+        if not isinstance(plain, VectorSymbol):
+            return None
+        return plain, self.rest(plain)
 
     def _half_trace(self, J: Any) -> Any:
         """Half the trace of the group's inertia."""

@@ -140,6 +140,7 @@ class MotionWriter:
     ) -> None:
         self.book, self.g, self.p, self.space = book, g, platform, space
         self.q = inverse.q
+        self.x = inverse.x
         self.motion = LegMotion()
 
     def write(self, prefix: str) -> LegMotion:
@@ -184,7 +185,15 @@ class MotionWriter:
         return self.book.define(
             g.name(f"r_{j}"), vector, rf"\mathbf r_{{{j}}}",
             f"from joint {j} to the connection point, along the links", Law.GEOMETRY, unit="m",
-            body=g.frame("axes", j))
+            body=g.frame("axes", j), forms=self._closed_loop(j))
+
+    def _closed_loop(self, j: int) -> tuple[Vector, ...]:
+        """The same vector, seen from the base; resolved vectors give way to what they resolve."""
+        x = self.x.get(j)
+        equations = {e.name: e for e in self.book.all_equations()}
+        while isinstance(x, VectorSymbol) and x.name in equations and x.name.startswith("xi_"):
+            x = self.x[int(x.name.removeprefix("xi_").split("_")[0])]
+        return (x,) if isinstance(x, VectorSymbol) else ()
 
     # ---- rates -----------------------------------------------------------------------
 
@@ -340,13 +349,19 @@ class MotionWriter:
         motion.S_ddot = book.define(
             g.name("S_ddot"), motion.a_p + motion.u_1, r"\ddot{\mathbf S}",
             "acceleration of the connection point", Law.RATE, unit="m/s^2", body="base",
-            reference="Eq. 23")
+            reference="Eq. 23", forms=self._platform_form())
         motion.known[motion.S_ddot] = linear_form(
             motion.a_p + motion.u_1, motion.unknowns, motion.known)
         bias = self._bias()
         self._joint_accelerations(writer, bias)
         self._angular_accelerations(writer)
         self._origin_accelerations(writer)
+
+    def _platform_form(self) -> tuple[Vector, ...]:
+        """The same acceleration by the platform's acceleration tensor."""
+        if not self.space.rotates:
+            return ()
+        return (self.p.t_ddot + self.p.tensor @ self.g.platform_point,)
 
     def _bias(self) -> Vector:
         """Acceleration of the connection point at zero joint accelerations."""

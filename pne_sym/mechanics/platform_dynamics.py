@@ -127,8 +127,7 @@ class PlatformWriter:
     def _tensor_form_newton(self) -> tuple[Any, ...]:
         if not self.space.rotates:
             return ()
-        tensor = Skew(self.p.alpha) + self.p.spin
-        return (self.mass * (self.p.t_ddot - self.p.gravity) + tensor @ self.moment,)
+        return (self.mass * (self.p.t_ddot - self.p.gravity) + self.p.tensor @ self.moment,)
 
     def _required(self) -> None:
         """What H tau plus the external wrench must equal."""

@@ -31,6 +31,7 @@ class PlatformMotion:
         omega, alpha: angular velocity and acceleration.
         gravity: acceleration of gravity.
         spin: omega~ omega~, the tensor of centripetal acceleration.
+        tensor: alpha~ + omega~ omega~, the acceleration tensor.
         mass: platform mass (scalar).
         centre: platform origin to centre of mass.
         inertia: tensor about the centre of mass.
@@ -43,6 +44,7 @@ class PlatformMotion:
     alpha: Vector
     gravity: Vector
     spin: Any
+    tensor: Any
     mass: Any
     centre: Vector
     inertia: Any
@@ -55,6 +57,7 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
     book.frames.append(Frame("platform", "base", rotation))
     vectors = _motion(book, manipulator, space)
     spin: Any = ZeroTensor
+    tensor: Any = ZeroTensor
     book.chapter("P", "Platform motion", _TEXT)
     if space.rotates:
         spin = book.define(
@@ -62,10 +65,15 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
             r"\mathbf W_p", "centripetal tensor of the platform: omega x (omega x r) = W_p r",
             Law.DEFINITION, unit="1/s^2", body="base", symmetric=True,
         )
+        tensor = book.define(
+            "B_p", Skew(vectors["alpha"]) + spin, r"\mathbf B_p",
+            "acceleration tensor of the platform: alpha x r + omega x (omega x r) = B_p r",
+            Law.DEFINITION, unit="1/s^2", body="base",
+        )
     mass, centre, inertia = _inertia(book, manipulator, space)
     return PlatformMotion(
         vectors["t"], vectors["t_dot"], vectors["t_ddot"], vectors["omega"], vectors["alpha"],
-        vectors["g"], spin, mass, centre, inertia,
+        vectors["g"], spin, tensor, mass, centre, inertia,
     )
 
 

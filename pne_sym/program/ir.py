@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
@@ -9,19 +10,34 @@ from typing import Any
 import sympy as sp
 
 
+class Kind(enum.IntEnum):
+    """When a value can be computed, in order of execution."""
+
+    PARAMETER = 0
+    PARAMETER_LEG = 1
+    PARAMETER_TOTAL = 2
+    STATE = 3
+    STATE_LEG = 4
+    TOTAL = 5
+
+
 @dataclass(frozen=True, order=True)
 class Stage:
-    """When a value can be computed.
+    """When a value can be computed, and over which legs.
 
     Attributes:
-        depends_on_state: needs X, V, A (else parameters alone).
-        leg_type: per leg of this type; "" when not per leg.
-        after_legs: needs a sum over legs.
+        kind: parameters alone (once, for a leg, after a sum over legs) or state
+            (before the legs, for a leg, after a sum over legs).
+        leg_type: the leg type of a value per leg; "" otherwise.
     """
 
-    depends_on_state: bool = False
+    kind: Kind
     leg_type: str = ""
-    after_legs: bool = False
+
+    @property
+    def depends_on_state(self) -> bool:
+        """Whether the value needs X, V or A."""
+        return self.kind >= Kind.STATE
 
     @property
     def per_leg(self) -> bool:
@@ -30,30 +46,25 @@ class Stage:
 
     def after_sum(self) -> Stage:
         """Stage of the sum of such values over the legs."""
-        return Stage(self.depends_on_state, "", True)
+        return Stage(Kind.TOTAL if self.depends_on_state else Kind.PARAMETER_TOTAL)
 
     @staticmethod
     def join(stages: Iterable[Stage]) -> Stage:
         """Stage of an expression made of values of these stages.
 
         Raises:
-            ValueError: values of two leg types meet outside a sum.
+            ValueError: values of two leg types, or of a leg and a sum over
+                legs of the state, meet.
         """
-        state, legs, after = False, set(), False
-        for stage in stages:
-            state |= stage.depends_on_state
-            after |= stage.after_legs and stage.depends_on_state
-            if stage.leg_type:
-                legs.add(stage.leg_type)
-            if stage.after_legs and not stage.depends_on_state:
-                after_parameters = True
-            else:
-                after_parameters = False
-            after |= after_parameters and not state
-        if len(legs) > 1:
-            raise ValueError(f"values of several leg types meet: {sorted(legs)}")
-        leg = legs.pop() if legs else ""
-        return Stage(state, leg, after and not leg)
+        found = set(stages)
+        legs = {stage.leg_type for stage in found} - {""}
+        highest = max((stage.kind for stage in found), default=Kind.PARAMETER)
+        if len(legs) > 1 or (legs and highest == Kind.TOTAL):
+            raise ValueError(f"values that never stand together meet: {sorted(found)}")
+        if not legs:
+            return Stage(highest)
+        alone = highest == Kind.PARAMETER_LEG
+        return Stage(Kind.PARAMETER_LEG if alone else Kind.STATE_LEG, legs.pop())
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,39 @@
+"""The one Jinja environment: templates hold layout only."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import jinja2
+
+
+def template_folder() -> Path:
+    """The templates beside the package (wheel) or at the top of the checkout.
+
+    Raises:
+        FileNotFoundError: neither is there.
+    """
+    package = Path(__file__).resolve().parent.parent
+    for folder in (package / "templates", package.parent / "templates"):
+        if folder.is_dir():
+            return folder
+    raise FileNotFoundError("the templates of pne_sym are not installed")
+
+
+@cache
+def environment() -> jinja2.Environment:
+    """Strict about undefined names; no autoescape, as no output is HTML."""
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(template_folder()),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,  # noqa: S701
+    )
+
+
+def render(template: str, **fields: object) -> str:
+    """A template filled with ready strings."""
+    return environment().get_template(template).render(**fields)

@@ -1,0 +1,671 @@
+"""Vectors to components: each named quantity in the frame where it costs least.
+
+A named vector has a home frame (that of the body it belongs to).  In another
+frame it is either rotated there or formed anew from its equation, whichever
+needs fewer operations beyond what is already there; likewise, of several forms
+of an equation the cheapest is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, names_in
+from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.frames import ConstantStep, Frames, Triple
+from pne_sym.lowering.solve import solve
+from pne_sym.vector import nodes as n
+
+Tensor9 = tuple[Triple, Triple, Triple]
+_MAX_TRIAL_DEPTH = 2
+_XYZ = "xyz"
+
+
+class Lowering:
+    """Components of the quantities of one derivation."""
+
+    def __init__(self, derivation: Derivation, builder: Builder) -> None:
+        self.d = derivation
+        self.b = builder
+        self.definition: dict[str, Equation] = {e.name: e for e in derivation.equations()}
+        self.given = {g.symbol: g for g in derivation.givens}
+        self.frames = Frames(derivation, builder, self.vector, self.scalar, self._store)
+        self.home: dict[str, str] = {}
+        self._vectors: dict[tuple[str, str], Triple] = {}
+        self._tensors: dict[tuple[str, str], Tensor9] = {}
+        self._scalars: dict[str, Atom] = {}
+        self._undo: list[tuple[dict[Any, Any], Any]] = []
+        self._depth = 0
+        self._dual = {w.name: (basis, k) for basis in derivation.bases
+                      for k, w in enumerate(basis.duals)}
+        self._named_parts = {(e.rhs.args[0].name, e.rhs.args[1]): e.name
+                             for e in derivation.equations() if isinstance(e.rhs, n.Dot)
+                             and getattr(e.rhs.args[0], "name", "") in self._dual}
+        self._basis_frame: dict[int, str] = {}
+        self._axis_columns: dict[tuple[str, str, int], Triple] = {}
+
+    # ---- keeping and forgetting --------------------------------------------------------
+
+    def _store(self, table: dict[Any, Any], key: Any, value: Any) -> Any:
+        table[key] = value
+        self._undo.append((table, key))
+        return value
+
+    def _attempt(self, make: Callable[[], Any]) -> tuple[int, Any]:
+        """Cost of making a value; nothing of it stays."""
+        mark, undo, equation = self.b.mark(), len(self._undo), self.b.equation
+        self._depth += 1
+        value = make()
+        cost = self.b.cost(_atoms(value))
+        self._depth -= 1
+        for table, key in self._undo[undo:]:
+            del table[key]
+        del self._undo[undo:]
+        self.b.rollback(mark)
+        self.b.equation = equation
+        return cost, value
+
+    def cheapest(self, makers: Sequence[Callable[[], Any]]) -> Any:
+        """The value of the cheapest way; ties go to the first."""
+        if len(makers) == 1 or self._depth >= _MAX_TRIAL_DEPTH:
+            return makers[0]()
+        costs = [self._attempt(make)[0] for make in makers]
+        return makers[costs.index(min(costs))]()
+
+    # ---- named quantities --------------------------------------------------------------
+
+    def ensure(self, name: str) -> None:
+        """Lower a name's definition in its home frame, and what it needs before it."""
+        if name in self.home or name in self._scalars or name not in self.definition:
+            return
+        equation = self.definition[name]
+        needed = sorted(names_in(equation.rhs))
+        optional = sorted(set().union(*(names_in(f) for f in equation.forms), set())
+                          - set(needed))
+        for other in needed + optional:
+            self.ensure(other)
+        for other in needed:
+            self._keep(other)
+        before, self.b.equation = self.b.equation, equation.id
+        self._lower(equation)
+        for condition in equation.conditions:
+            self.b.guard(condition.trouble.value, self.scalar(condition.value),
+                         self.scalar(condition.scale), condition.power)
+        self.b.equation = before
+
+    def _keep(self, name: str) -> None:
+        if name in self._scalars:
+            self.b.keep([self._scalars[name]])
+        elif name in self.home:
+            key = (name, self.home[name])
+            self.b.keep(_atoms(self._vectors.get(key, self._tensors.get(key, ()))))
+
+    def _lower(self, equation: Equation) -> None:
+        name, lhs = equation.name, equation.lhs
+        forms = (equation.rhs, *equation.forms)
+        if isinstance(lhs, sp.Symbol):
+            self._lower_scalar(name, forms)
+            return
+        frame = self._home_of(name, forms)
+        self._store(self.home, name, frame)
+        if isinstance(lhs, n.VectorSymbol):
+            if name in self._dual:
+                value = self._dual_vector(name, frame)
+            else:
+                value = self.cheapest([lambda f=f: self.vector(f, frame, name) for f in forms])
+            self._store(self._vectors, (name, frame), value)
+        else:
+            value = self.cheapest([lambda f=f: self.tensor(f, frame, name) for f in forms])
+            if lhs.is_symmetric:
+                value = self._symmetrised(value)
+            self._store(self._tensors, (name, frame), value)
+
+    def _lower_scalar(self, name: str, forms: Sequence[Any]) -> None:
+        makers = [lambda f=f: self.scalar(f, name) for f in forms]
+        self._store(self._scalars, name, self.cheapest(makers))
+
+    def _home_of(self, name: str, forms: Sequence[Any]) -> str:
+        body = self.d.notation[name].body
+        if body is not None:
+            return body
+        frames = self._frames_of(forms[0])
+        costs = [self._attempt(lambda f=f: self._any(forms[0], f))[0] for f in frames]
+        return frames[costs.index(min(costs))]
+
+    def _any(self, expr: Any, frame: str) -> Any:
+        return self.vector(expr, frame) if isinstance(expr, n.Vector) else self.tensor(expr, frame)
+
+    def _frames_of(self, expr: Any) -> list[str]:
+        """Home frames of the vectors and tensors in an expression, most frequent first."""
+        found: dict[str, int] = {}
+        for symbol in _symbols(expr):
+            if symbol in self.given:
+                frame = self.given[symbol].frame
+            else:
+                self.ensure(symbol.name)
+                frame = self.home[symbol.name]
+            found[frame] = found.get(frame, 0) + 1
+        return sorted(found, key=lambda f: (-found[f], f)) or ["base"]
+
+    def _symmetrised(self, t: Tensor9) -> Tensor9:
+        """Of each pair of equal entries the cheaper one."""
+        rows = [list(row) for row in t]
+        for i, j in ((0, 1), (0, 2), (1, 2)):
+            upper, lower = t[i][j], t[j][i]
+            best = lower if self.b.cost([lower]) < self.b.cost([upper]) else upper
+            rows[i][j] = rows[j][i] = best
+        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))  # type: ignore[return-value]
+
+    # ---- vectors -------------------------------------------------------------------------
+
+    def vector(self, expr: Any, frame: str, hint: str = "") -> Triple:
+        """Components of a vector expression in a frame."""
+        if isinstance(expr, n.VectorSymbol):
+            return self._vector_symbol(expr, frame)
+        if expr == n.ZeroVector:
+            return (sp.S.Zero,) * 3
+        operation = _VECTOR_OPERATIONS.get(type(expr))
+        if operation is None:
+            raise TypeError(f"no components for {type(expr).__name__}")
+        result: Triple = operation(self, expr, frame, hint)
+        return result
+
+    def _vector_symbol(self, symbol: Any, frame: str) -> Triple:
+        key = (symbol.name, frame)
+        if key in self._vectors:
+            return self._vectors[key]
+        if symbol in self.given:
+            given = self.given[symbol]
+            if given.frame == frame:
+                return self._store(self._vectors, key, given.components)  # type: ignore[no-any-return]
+            value = self.rotate(given.components, given.frame, frame, symbol.name)
+            return self._store(self._vectors, key, value)  # type: ignore[no-any-return]
+        self.ensure(symbol.name)
+        if key in self._vectors:
+            return self._vectors[key]
+        home = self.home[symbol.name]
+        makers = [lambda: self.rotate(self._vectors[symbol.name, home], home, frame, symbol.name)]
+        equation = self.definition[symbol.name]
+        if symbol.name not in self._dual:
+            makers += [lambda f=f: self.vector(f, frame, symbol.name)
+                       for f in (equation.rhs, *equation.forms) if self._is_there(f, frame)]
+        before, self.b.equation = self.b.equation, equation.id
+        value = self.cheapest(makers)
+        self.b.equation = before
+        return self._store(self._vectors, key, value)  # type: ignore[no-any-return]
+
+    def _is_there(self, expr: Any, frame: str) -> bool:
+        """Whether all vectors of an expression have components in a frame already."""
+        return all((symbol.name, frame) in self._vectors or (symbol.name, frame) in self._tensors
+                   or (symbol in self.given and self.given[symbol].frame == frame)
+                   for symbol in _symbols(expr))
+
+    def rotate(self, v: Triple, origin: str, target: str, hint: str = "") -> Triple:
+        """Components of a vector in another frame: step by step, or by axis columns."""
+        if origin == target or all(c == 0 for c in v):
+            return v
+        makers = [lambda: self._by_steps(v, origin, target, hint)]
+        if target == "base" and sum(c != 0 for c in v) <= 3 and origin != "platform":
+            makers.append(lambda: self._by_columns(v, origin, target, hint))
+        return self.cheapest(makers)  # type: ignore[no-any-return]
+
+    def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
+        steps = self.frames.steps(origin, target)
+        for k, step in enumerate(steps):
+            last = k == len(steps) - 1
+            v = self.frames.apply(step, v, f"{hint}_in_base" if last and target == "base" else
+                                  f"{hint}_r{k}")
+        return v
+
+    def _by_columns(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
+        columns = [self.axis_column(origin, target, k) if v[k] != 0 else None for k in range(3)]
+        return tuple(  # type: ignore[return-value]
+            self.b.add([self.b.mul(v[k], column[i]) for k, column in enumerate(columns)
+                        if column is not None], f"{hint}_in_base_{_XYZ[i]}")
+            for i in range(3))
+
+    def axis_column(self, origin: str, target: str, k: int) -> Triple:
+        """Axis k of a frame in another: along a vector known in both, by cross product, or turned."""
+        key = (origin, target, k)
+        if key in self._axis_columns:
+            return self._axis_columns[key]
+        unit = [sp.S.Zero] * 3
+        unit[k] = sp.S.One
+        hint = f"axis_{_XYZ[k]}_{origin.replace('.', '_')}"
+        makers: list[Callable[[], Triple]] = [
+            lambda: self._by_steps((unit[0], unit[1], unit[2]), origin, target, hint)]
+        along = self._vector_along(origin, target, k)
+        if along is not None:
+            makers.append(along)
+        others = [(origin, target, (k + 1) % 3), (origin, target, (k + 2) % 3)]
+        if all(other in self._axis_columns for other in others):
+            a, c = (self._axis_columns[other] for other in others)
+            makers.append(lambda: self._cross(a, c, hint))
+        return self._store(self._axis_columns, key, self.cheapest(makers))  # type: ignore[no-any-return]
+
+    def _vector_along(self, origin: str, target: str, k: int) -> Callable[[], Triple] | None:
+        """A way by a vector whose only component in the origin frame is its k-th."""
+        for (name, frame), v in self._vectors.items():
+            if frame != origin or v[k] == 0 or v[k].is_Number or any(
+                    v[i] != 0 for i in range(3) if i != k):
+                continue
+            same = self._same_vector(name, target)
+            if same is not None:
+                length = v[k]
+                return lambda: tuple(  # type: ignore[return-value]
+                    self.b.divide(c, length, f"axis_{_XYZ[k]}_{_XYZ[i]}")
+                    for i, c in enumerate(same))
+        return None
+
+    def _same_vector(self, name: str, target: str) -> Triple | None:
+        """Components in the target of a vector or of an equal one."""
+        if (name, target) in self._vectors:
+            return self._vectors[name, target]
+        if name in self.definition:
+            for form in self.definition[name].forms:
+                if isinstance(form, n.VectorSymbol) and (form.name, target) in self._vectors:
+                    return self._vectors[form.name, target]
+        return None
+
+    def _cross(self, a: Triple, c: Triple, hint: str = "") -> Triple:
+        b = self.b
+        return tuple(  # type: ignore[return-value]
+            b.add((b.mul(a[(i + 1) % 3], c[(i + 2) % 3]), -b.mul(a[(i + 2) % 3], c[(i + 1) % 3])),
+                  f"{hint}_{_XYZ[i]}" if hint else "")
+            for i in range(3))
+
+    def _vector_cross(self, expr: Any, frame: str, hint: str) -> Triple:
+        return self._cross(self.vector(expr.args[0], frame), self.vector(expr.args[1], frame), hint)
+
+    def _vector_add(self, expr: Any, frame: str, hint: str) -> Triple:
+        plain, duals = self._split_duals(expr.args)
+        parts = [self.vector(term, frame) for term in plain]
+        for basis, weights in duals:
+            parts.append(self._combination(basis, weights, frame))
+        return self._sum(parts, hint)
+
+    def _sum(self, parts: Sequence[Triple], hint: str) -> Triple:
+        return tuple(  # type: ignore[return-value]
+            self.b.add([p[i] for p in parts], f"{hint}_{_XYZ[i]}" if hint else "",
+                       named=bool(hint)) for i in range(3))
+
+    def _split_duals(self, terms: Iterable[Any]) -> tuple[list[Any], list[Any]]:
+        """Terms, and combinations of reciprocal vectors by basis."""
+        plain: list[Any] = []
+        weights: dict[int, tuple[ReciprocalBasis, list[Any]]] = {}
+        for term in terms:
+            factor, vector = n.split_scale(term)
+            found = self._dual.get(getattr(vector, "name", ""))
+            if found is None:
+                plain.append(term)
+                continue
+            basis, k = found
+            entry = weights.setdefault(id(basis), (basis, [sp.S.Zero] * len(basis.duals)))
+            entry[1][k] = entry[1][k] + factor
+        return plain, list(weights.values())
+
+    def _vector_scale(self, expr: Any, frame: str, hint: str) -> Triple:
+        factor, vector = expr.args
+        if getattr(vector, "name", "") in self._dual:
+            return self._vector_add(n.VectorAdd(expr), frame, hint)
+        divisor = _divisor(factor)
+        v = self.vector(vector, frame)
+        if divisor is not None:
+            bottom = self.scalar(divisor)
+            top = self.scalar(factor * divisor)
+            return tuple(  # type: ignore[return-value]
+                self.b.divide(self.b.mul(top, c), bottom, f"{hint}_{_XYZ[i]}" if hint else "")
+                for i, c in enumerate(v))
+        if all(c == 0 for c in v):
+            return v
+        s = self.scalar(factor)
+        return tuple(  # type: ignore[return-value]
+            self.b.mul(s, c, f"{hint}_{_XYZ[i]}" if hint else "") for i, c in enumerate(v))
+
+    def _vector_apply(self, expr: Any, frame: str, hint: str) -> Triple:
+        v = self.vector(expr.args[1], frame)
+        t = self.tensor(expr.args[0], frame)
+        return tuple(  # type: ignore[return-value]
+            self.b.add([self.b.mul(t[i][k], v[k]) for k in range(3)],
+                       f"{hint}_{_XYZ[i]}" if hint else "") for i in range(3))
+
+    def _vector_axial(self, expr: Any, frame: str, hint: str) -> Triple:
+        inner = expr.args[0]
+        if isinstance(inner, n.Compose) and getattr(inner.args[1], "is_symmetric", False):
+            return self._moment_of(self.tensor(inner.args[0], frame),
+                                   self.tensor(inner.args[1], frame), hint)
+        t = self.tensor(expr.args[0], frame)
+        return tuple(  # type: ignore[return-value]
+            self.b.add((t[(i + 2) % 3][(i + 1) % 3], -t[(i + 1) % 3][(i + 2) % 3]),
+                       f"{hint}_{_XYZ[i]}" if hint else "") for i in range(3))
+
+    def _moment_of(self, B: Tensor9, S: Tensor9, hint: str) -> Triple:
+        """Axial(B S) for symmetric S, products of inertia taken out once."""
+        b = self.b
+
+        def entry(i: int) -> Atom:
+            j, k = (i + 1) % 3, (i + 2) % 3
+            return b.add((
+                b.mul(B[k][i], S[i][j]), b.mul(B[k][j], S[j][j]),
+                b.mul(S[j][k], b.difference(B[k][k], B[j][j])),
+                -b.mul(B[j][i], S[i][k]), -b.mul(B[j][k], S[k][k]),
+            ), f"{hint}_{_XYZ[i]}" if hint else "")
+
+        return (entry(0), entry(1), entry(2))
+
+    def _vector_perp(self, expr: Any, frame: str, hint: str) -> Triple:
+        x, y, _ = self.vector(expr.args[0], frame)
+        return (-y, x, sp.S.Zero)
+
+    def _vector_total(self, expr: Any, frame: str, hint: str) -> Triple:
+        value, leg_type = expr.args
+        v = self.vector(value, frame, f"{hint}_leg" if hint else "")
+        return tuple(  # type: ignore[return-value]
+            self.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{_XYZ[i]}")
+            for i, c in enumerate(v))
+
+    # ---- reciprocal bases ----------------------------------------------------------------
+
+    def basis_frame(self, basis: ReciprocalBasis) -> str:
+        """The frame in which the basis vectors have most zeros."""
+        if id(basis) not in self._basis_frame:
+            for vector in basis.vectors:
+                self.ensure(getattr(vector, "name", ""))
+            costs = []
+            for frame in basis.frames:
+                cost, columns = self._attempt(
+                    lambda f=frame: [self.vector(v, f) for v in basis.vectors])
+                nonzero = sum(c not in (0, 1, -1) for column in columns for c in column)
+                costs.append((nonzero, cost))
+            self._basis_frame[id(basis)] = basis.frames[costs.index(min(costs))]
+        return self._basis_frame[id(basis)]
+
+    def _basis_rows(self, basis: ReciprocalBasis) -> list[list[Atom]]:
+        frame = self.basis_frame(basis)
+        columns = [self.vector(v, frame) for v in basis.vectors]
+        return [[column[i] for column in columns] for i in range(3)]
+
+    def _resolve(self, basis: ReciprocalBasis, x: Any) -> list[Atom]:
+        """w_j . x for all j: the solution of sum v_j y_j = x."""
+        rows = self._basis_rows(basis)
+        right = self.vector(x, self.basis_frame(basis))
+        scales = [self.scalar(s) for s in basis.scales]
+        hints = [self._named_parts.get((w.name, x), "") for w in basis.duals]
+        return solve(self.b, rows, right, lambda i, j: scales[j], hints)
+
+    def _combination(self, basis: ReciprocalBasis, weights: Sequence[Any], frame: str) -> Triple:
+        """sum g_j w_j: the solution of v_j . F = g_j."""
+        home = self.basis_frame(basis)
+        rows = self._basis_rows(basis)
+        used = [i for i in range(3) if any(e != 0 for e in rows[i])]
+        transposed = [[rows[i][j] for i in used] for j in range(len(basis.vectors))]
+        right = [self.scalar(g) for g in weights]
+        scales = [self.scalar(s) for s in basis.scales]
+        solution = solve(self.b, transposed, right, lambda j, i: scales[j],
+                         [f"dual_{_XYZ[i]}" for i in used])
+        components = [sp.S.Zero] * 3
+        for i, value in zip(used, solution, strict=True):
+            components[i] = value
+        return self.rotate((components[0], components[1], components[2]), home, frame)
+
+    def _dual_vector(self, name: str, frame: str) -> Triple:
+        basis, k = self._dual[name]
+        weights = [sp.S.One if i == k else sp.S.Zero for i in range(len(basis.duals))]
+        return self._combination(basis, weights, frame)
+
+    # ---- tensors -------------------------------------------------------------------------
+
+    def tensor(self, expr: Any, frame: str, hint: str = "") -> Tensor9:
+        """Components of a tensor expression in a frame."""
+        if isinstance(expr, n.TensorSymbol):
+            return self._tensor_symbol(expr, frame)
+        if expr in (n.ZeroTensor, n.Identity):
+            one = sp.S.One if expr == n.Identity else sp.S.Zero
+            return tuple(tuple(one if i == j else sp.S.Zero for j in range(3))  # type: ignore[return-value]
+                         for i in range(3))
+        operation = _TENSOR_OPERATIONS.get(type(expr))
+        if operation is None:
+            raise TypeError(f"no components for {type(expr).__name__}")
+        result: Tensor9 = operation(self, expr, frame, hint)
+        return result
+
+    def _tensor_symbol(self, symbol: Any, frame: str) -> Tensor9:
+        key = (symbol.name, frame)
+        if key in self._tensors:
+            return self._tensors[key]
+        if symbol in self.given:
+            given = self.given[symbol]
+            c = given.components
+            value: Tensor9 = (tuple(c[:3]), tuple(c[3:6]), tuple(c[6:]))  # type: ignore[assignment]
+            origin = given.frame
+        else:
+            self.ensure(symbol.name)
+            if key in self._tensors:
+                return self._tensors[key]
+            origin = self.home[symbol.name]
+            value = self._tensors[symbol.name, origin]
+        before = self.b.equation
+        if symbol.name in self.definition:
+            self.b.equation = self.definition[symbol.name].id
+        rotated = self.rotate_tensor(value, origin, frame, symbol.is_symmetric, symbol.name)
+        self.b.equation = before
+        return self._store(self._tensors, key, rotated)  # type: ignore[no-any-return]
+
+    def rotate_tensor(self, t: Tensor9, origin: str, target: str, symmetric: bool,
+                      hint: str = "") -> Tensor9:
+        """Components of a tensor in another frame."""
+        if origin == target:
+            return t
+        makers = [lambda: self._tensor_by_steps(t, origin, target, symmetric)]
+        if symmetric and target == "base":
+            makers += [lambda k=k: self._tensor_by_columns(t, origin, target, k, hint)
+                       for k in range(3)]
+        return self.cheapest(makers)  # type: ignore[no-any-return]
+
+    def _tensor_by_steps(self, t: Tensor9, origin: str, target: str, symmetric: bool) -> Tensor9:
+        for step in self.frames.steps(origin, target):
+            columns = [self.frames.apply(step, (t[0][j], t[1][j], t[2][j])) for j in range(3)]
+            rows = [self.frames.apply(step, (columns[0][i], columns[1][i], columns[2][i]))
+                    for i in range(3)]
+            t = (rows[0], rows[1], rows[2])
+            if symmetric and isinstance(step, ConstantStep):
+                t = self._symmetrised(t)
+        return self._symmetrised(t) if symmetric else t
+
+    def _tensor_by_columns(self, t: Tensor9, origin: str, target: str, left: int,
+                           hint: str) -> Tensor9:
+        """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated."""
+        b, k = self.b, left
+        i, j = (k + 1) % 3, (k + 2) % 3
+        x, y, z = (self.axis_column(origin, target, m) for m in (i, j, k))
+        half = sp.Rational(1, 2)
+        xx = b.mul(half, b.add((t[i][i], -t[k][k])))
+        yy = b.mul(half, b.add((t[j][j], -t[k][k])))
+        a = [b.add((b.mul(xx, x[m]), b.mul(t[i][j], y[m]), b.mul(t[i][k], z[m])))
+             for m in range(3)]
+        c = [b.add((b.mul(yy, y[m]), b.mul(t[j][k], z[m]))) for m in range(3)]
+        rows = [[sp.S.Zero] * 3 for _ in range(3)]
+        for p in range(3):
+            half_pp = b.add((b.mul(x[p], a[p]), b.mul(y[p], c[p])))
+            rows[p][p] = b.add((t[k][k], b.mul(sp.Integer(2), half_pp)))
+            for q in range(p + 1, 3):
+                rows[p][q] = rows[q][p] = b.add((
+                    b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p])))
+        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))  # type: ignore[return-value]
+
+    def _tensor_add(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        parts = [self.tensor(term, frame) for term in expr.args]
+        return self._entries(
+            lambda i, j: self.b.add([p[i][j] for p in parts], _entry(hint, i, j)))
+
+    def _entries(self, make: Callable[[int, int], Atom]) -> Tensor9:
+        return tuple(tuple(make(i, j) for j in range(3)) for i in range(3))  # type: ignore[return-value]
+
+    def _tensor_scale(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        s, t = self.scalar(expr.args[0]), self.tensor(expr.args[1], frame)
+        return self._entries(lambda i, j: self.b.mul(s, t[i][j], _entry(hint, i, j)))
+
+    def _tensor_skew(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        x, y, z = self.vector(expr.args[0], frame)
+        zero = sp.S.Zero
+        return ((zero, -z, y), (z, zero, -x), (-y, x, zero))
+
+    def _tensor_outer(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        a, c = self.vector(expr.args[0], frame), self.vector(expr.args[1], frame)
+        return self._entries(lambda i, j: self.b.mul(a[i], c[j], _entry(hint, i, j)))
+
+    def _tensor_compose(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        first, second = expr.args
+        if isinstance(first, n.Skew) and first == second:
+            return self._skew_squared(self.vector(first.args[0], frame), hint)
+        a, c = self.tensor(first, frame), self.tensor(second, frame)
+        return self._entries(lambda i, j: self.b.add(
+            [self.b.mul(a[i][k], c[k][j]) for k in range(3)], _entry(hint, i, j)))
+
+    def _skew_squared(self, w: Triple, hint: str) -> Tensor9:
+        """w~ w~ = w w^T - (w . w) E: squares once."""
+        b = self.b
+        squares = [b.mul(c, c) for c in w]
+
+        def entry(i: int, j: int) -> Atom:
+            if i != j:
+                return b.mul(w[min(i, j)], w[max(i, j)], _entry(hint, min(i, j), max(i, j)))
+            return -b.add((squares[(i + 1) % 3], squares[(i + 2) % 3]), _entry(hint, i, i))
+
+        return self._entries(entry)
+
+    def _tensor_transpose(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        t = self.tensor(expr.args[0], frame)
+        return self._entries(lambda i, j: t[j][i])
+
+    def _tensor_total(self, expr: Any, frame: str, hint: str) -> Tensor9:
+        value, leg_type = expr.args
+        t = self.tensor(value, frame)
+        stem = f"{hint or 'total'}_{leg_type.name}"
+        return self._entries(lambda i, j: self.b.total(t[i][j], leg_type.name, _entry(stem, i, j)))
+
+    # ---- scalars -------------------------------------------------------------------------
+
+    def scalar(self, expr: Any, hint: str = "") -> Atom:
+        """The atom of a scalar expression."""
+        if expr.is_Number:
+            return expr
+        if expr.is_Symbol:
+            return self._scalar_symbol(expr)
+        if isinstance(expr, n.Dot):
+            return self._dot(expr, hint)
+        if isinstance(expr, n.PlaneCross):
+            return self._plane_cross(expr, hint)
+        if isinstance(expr, n.LegSum):
+            value, leg_type = expr.args
+            return self.b.total(self.scalar(value), leg_type.name,
+                                f"{hint or 'total'}_{leg_type.name}")
+        if expr.is_Add:
+            return self.b.add([self.scalar(a) for a in expr.args], hint, named=True)
+        if expr.is_Mul:
+            return self._product(expr, hint)
+        if expr.is_Pow:
+            return self._power(*expr.args, hint)
+        return self.b.let(expr.func(*(self.scalar(a) for a in expr.args)), hint, named=True)
+
+    def _scalar_symbol(self, symbol: sp.Symbol) -> Atom:
+        if symbol.name in self.definition:
+            self.ensure(symbol.name)
+            return self._scalars[symbol.name]
+        return symbol
+
+    def _product(self, expr: Any, hint: str) -> Atom:
+        divisor = _divisor(expr)
+        if divisor is not None:
+            top = self.scalar(expr * divisor)
+            return self.b.divide(top, self.scalar(divisor), hint)
+        result: Atom = sp.S.One
+        for k, factor in enumerate(expr.args):
+            last = k == len(expr.args) - 1
+            result = self.b.mul(result, self.scalar(factor), hint if last else "")
+        return result
+
+    def _power(self, base: Any, exponent: Any, hint: str) -> Atom:
+        value = self.scalar(base)
+        if exponent == -1:
+            return self.b.inverse(value)
+        if exponent == sp.Rational(1, 2):
+            return sp.sqrt(value) if value.is_Number else self.b.let(sp.sqrt(value), hint)
+        if exponent == sp.Rational(-1, 2):
+            return self.b.inverse(self.b.let(sp.sqrt(value)))
+        if not exponent.is_Integer:
+            raise TypeError(f"no power {exponent} in a program")
+        result: Atom = value
+        for _ in range(abs(int(exponent)) - 1):
+            result = self.b.mul(result, value)
+        return self.b.inverse(result) if exponent < 0 else result
+
+    def _dot(self, expr: Any, hint: str) -> Atom:
+        a, c = expr.args
+        for dual, other in ((a, c), (c, a)):
+            found = self._dual.get(getattr(dual, "name", ""))
+            if found is not None:
+                basis, k = found
+                return self._resolve(basis, other)[k]
+        frames = self._frames_of(expr)
+        return self.cheapest([lambda f=f: self._dot_in(a, c, f, hint) for f in frames])  # type: ignore[no-any-return]
+
+    def _dot_in(self, a: Any, c: Any, frame: str, hint: str) -> Atom:
+        u, v = self.vector(a, frame), self.vector(c, frame)
+        return self.b.add([self.b.mul(x, y) for x, y in zip(u, v, strict=True)], hint, named=True)
+
+    def _plane_cross(self, expr: Any, hint: str) -> Atom:
+        frame = self._frames_of(expr)[0]
+        u, v = self.vector(expr.args[0], frame), self.vector(expr.args[1], frame)
+        return self.b.add((self.b.mul(u[0], v[1]), -self.b.mul(u[1], v[0])), hint)
+
+
+_VECTOR_OPERATIONS: dict[type, Any] = {
+    n.VectorAdd: Lowering._vector_add,
+    n.VectorScale: Lowering._vector_scale,
+    n.Cross: Lowering._vector_cross,
+    n.Apply: Lowering._vector_apply,
+    n.Axial: Lowering._vector_axial,
+    n.Perp: Lowering._vector_perp,
+    n.VectorLegSum: Lowering._vector_total,
+}
+_TENSOR_OPERATIONS: dict[type, Any] = {
+    n.TensorAdd: Lowering._tensor_add,
+    n.TensorScale: Lowering._tensor_scale,
+    n.Skew: Lowering._tensor_skew,
+    n.Outer: Lowering._tensor_outer,
+    n.Compose: Lowering._tensor_compose,
+    n.Transpose: Lowering._tensor_transpose,
+    n.TensorLegSum: Lowering._tensor_total,
+}
+
+
+def _entry(hint: str, i: int, j: int) -> str:
+    return f"{hint}_{_XYZ[i]}{_XYZ[j]}" if hint else ""
+
+
+def _divisor(expr: Any) -> Any | None:
+    """The symbol or scalar by which an expression divides, if it is a single one."""
+    factors = expr.args if expr.is_Mul else (expr,)
+    divisors = [f.base for f in factors if f.is_Pow and f.exp == -1]
+    return divisors[0] if len(divisors) == 1 else None
+
+
+def _symbols(expr: Any) -> list[Any]:
+    """Vector and tensor symbols of an expression, in order of appearance."""
+    if isinstance(expr, n.VectorSymbol | n.TensorSymbol):
+        return [expr]
+    found: list[Any] = []
+    for arg in getattr(expr, "args", ()):
+        found.extend(symbol for symbol in _symbols(arg) if symbol not in found)
+    return found
+
+
+def _atoms(value: Any) -> list[Atom]:
+    """All atoms of nested tuples."""
+    if isinstance(value, tuple | list):
+        return [atom for part in value for atom in _atoms(part)]
+    return [value]

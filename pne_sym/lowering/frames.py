@@ -1,0 +1,140 @@
+"""Frames and how components pass from one to another.
+
+The frames form a tree.  A step is a constant rotation (numbers or prepared
+values) or a turn about z by a known cosine and sine.  Neighbouring constant
+steps are multiplied once, among the parameters.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Derivation, Frame
+from pne_sym.lowering.builder import Atom, Builder
+
+Triple = tuple[Atom, Atom, Atom]
+Matrix = tuple[Triple, Triple, Triple]
+
+
+@dataclass(frozen=True)
+class ConstantStep:
+    """v_to = matrix v_from."""
+
+    matrix: Matrix
+
+
+@dataclass(frozen=True)
+class TurnStep:
+    """Turn about z: v_to = (c x + s y, c y - s x, z)."""
+
+    c: Atom
+    s: Atom
+
+
+class Frames:
+    """The tree of frames of a derivation."""
+
+    def __init__(self, derivation: Derivation, builder: Builder,
+                 components: Callable[[Any, str], Triple], scalar: Callable[[Any], Atom],
+                 store: Callable[[dict[Any, Any], Any, Any], Any]) -> None:
+        self.b = builder
+        self._store = store  # forgets with a rolled-back trial
+        self._components = components
+        self._scalar = scalar
+        self._frame = {frame.name: frame for frame in derivation.frames}
+        self._steps: dict[tuple[str, str], list[ConstantStep | TurnStep]] = {}
+        self._matrix: dict[str, Matrix] = {}
+
+    def steps(self, origin: str, target: str) -> list[ConstantStep | TurnStep]:
+        """Steps from one frame to another, constant neighbours merged."""
+        key = (origin, target)
+        if key not in self._steps:
+            self._store(self._steps, key, self._merge(self._path(origin, target)))
+        return self._steps[key]
+
+    def _ancestors(self, name: str) -> list[str]:
+        line = [name]
+        while (parent := self._frame[line[-1]].parent) is not None:
+            line.append(parent)
+        return line
+
+    def _path(self, origin: str, target: str) -> list[ConstantStep | TurnStep]:
+        up, down = self._ancestors(origin), self._ancestors(target)
+        common = next(name for name in up if name in down)
+        path: list[ConstantStep | TurnStep] = []
+        for name in up[: up.index(common)]:
+            path.append(self._to_parent(self._frame[name]))
+        for name in reversed(down[: down.index(common)]):
+            path.append(self._to_child(self._frame[name]))
+        return path
+
+    def _to_child(self, frame: Frame) -> ConstantStep | TurnStep:
+        if frame.angle is not None:
+            return TurnStep(self._scalar(frame.angle[0]), self._scalar(frame.angle[1]))
+        return ConstantStep(_transpose(self.matrix(frame)))
+
+    def _to_parent(self, frame: Frame) -> ConstantStep | TurnStep:
+        if frame.angle is not None:
+            return TurnStep(self._scalar(frame.angle[0]), -self._scalar(frame.angle[1]))
+        return ConstantStep(self.matrix(frame))
+
+    def matrix(self, frame: Frame) -> Matrix:
+        """parent_R_child of a frame that does not turn."""
+        if frame.name not in self._matrix:
+            assert frame.rotation is not None
+            entries = list(frame.rotation)
+            if None in entries:
+                entries = self._fill(frame, entries)
+            rows = [tuple(sp.sympify(e) for e in entries[3 * i: 3 * i + 3]) for i in range(3)]
+            self._store(self._matrix, frame.name, (rows[0], rows[1], rows[2]))
+        return self._matrix[frame.name]
+
+    def _fill(self, frame: Frame, entries: list[Any]) -> list[Any]:
+        assert frame.parent is not None
+        if frame.axes is not None:
+            columns = [self._components(axis, frame.parent) for axis in frame.axes]
+            found = [columns[k % 3][k // 3] for k in range(9)]
+        else:
+            assert frame.rows is not None
+            rows = [self._components(row, frame.name) for row in frame.rows]
+            found = [rows[k // 3][k % 3] for k in range(9)]
+        return [f if e is None else e for e, f in zip(entries, found, strict=True)]
+
+    def _merge(self, path: list[ConstantStep | TurnStep]) -> list[ConstantStep | TurnStep]:
+        merged: list[ConstantStep | TurnStep] = []
+        for step in path:
+            last = merged[-1] if merged else None
+            if isinstance(step, ConstantStep) and isinstance(last, ConstantStep):
+                product = self._product(step.matrix, last.matrix)
+                merged[-1] = ConstantStep(product)
+            else:
+                merged.append(step)
+        return [s for s in merged if not (isinstance(s, ConstantStep) and _is_identity(s.matrix))]
+
+    def _product(self, a: Matrix, b: Matrix) -> Matrix:
+        rows = [tuple(self.b.add([self.b.mul(a[i][k], b[k][j]) for k in range(3)])
+                      for j in range(3)) for i in range(3)]
+        return (rows[0], rows[1], rows[2])  # type: ignore[return-value]
+
+    def apply(self, step: ConstantStep | TurnStep, v: Triple, hint: str = "") -> Triple:
+        """Components after a step."""
+        b, (x, y, z) = self.b, v
+        if isinstance(step, TurnStep):
+            return (b.add((b.mul(step.c, x), b.mul(step.s, y)), f"{hint}_x"),
+                    b.add((b.mul(step.c, y), -b.mul(step.s, x)), f"{hint}_y"), z)
+        return tuple(  # type: ignore[return-value]
+            b.add([b.mul(step.matrix[i][k], v[k]) for k in range(3)], f"{hint}_{'xyz'[i]}")
+            for i in range(3))
+
+
+def _transpose(m: Matrix) -> Matrix:
+    rows = [tuple(m[j][i] for j in range(3)) for i in range(3)]
+    return (rows[0], rows[1], rows[2])  # type: ignore[return-value]
+
+
+def _is_identity(m: Matrix) -> bool:
+    return all(m[i][j] == (1 if i == j else 0) for i in range(3) for j in range(3))

@@ -1,0 +1,225 @@
+"""Slices of the lowered statements: one function per purpose, in blocks around the leg loops."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Derivation, Output
+from pne_sym.lowering.builder import Atom, Builder, Statement
+from pne_sym.lowering.components import Lowering
+from pne_sym.lowering.simplify import inline_single_use
+from pne_sym.program.ir import (
+    Assignment,
+    Block,
+    Check,
+    Function,
+    Kind,
+    Program,
+    Stage,
+    Store,
+)
+
+# Arrays of each function; functions of one group are lowered together, so that they share
+# what they have in common.
+GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
+    (("dynamics", ("M", "Z", "H", "Hk")), ("M", ("M",)), ("Z", ("Z",)), ("H", ("H",)),
+     ("Hk", ("Hk",))),
+    (("required", ("required", "H", "Hk")), ("inverse_kinematics", ("q",)),
+     ("joint_rates", ("qd",)), ("joint_accelerations", ("qdd",)),
+     ("legs", ("leg_force", "drive"))),
+    (("potential", ("potential",)),),
+)
+
+
+def lower(derivation: Derivation) -> Program:
+    """Lower a derivation to scalar code.
+
+    Raises:
+        SingularPattern: a leg's freedoms are dependent by structure.
+    """
+    builder = Builder()
+    builder.leg_counts = {t.name: len(t.indices) for t in derivation.leg_types}
+    _declare(derivation, builder)
+    slices = []
+    for group in GROUPS:
+        lowering = Lowering(derivation, builder)
+        builder.live = set()
+        stores = {output: _stores(lowering, output) for output in derivation.outputs
+                  if any(output.array in arrays for _, arrays in group)}
+        for name, arrays in group:
+            chosen = [(stage, store) for output, found in stores.items()
+                      if output.array in arrays for stage, store in found]
+            if chosen:
+                slices.append(_Slice(name, chosen))
+    return _program(derivation, builder, slices)
+
+
+def _declare(derivation: Derivation, builder: Builder) -> None:
+    """Stages of the symbols that come from outside."""
+    table = derivation.parameters
+    for name, (parameter, _) in table.entries.items():
+        leg = parameter.leg_type
+        stage = Stage(Kind.PARAMETER_LEG, leg) if leg else Stage(Kind.PARAMETER)
+        builder.declare(sp.Symbol(name, real=True), stage)
+    for name, (leg_type, _) in table.branches.items():
+        sign = builder.declare(sp.Symbol(name, real=True), Stage(Kind.PARAMETER_LEG, leg_type))
+        builder.signs.add(sign)
+    defined = {e.name for e in derivation.equations()}
+    for given in derivation.givens:
+        _declare_state(builder, given.components)
+    for frame in derivation.frames:
+        _declare_state(builder, frame.rotation or ())
+    for name in derivation.notation:
+        if name not in defined and name.startswith(("y_", "yd_", "ydd_")):
+            leg_type = _leg_type_of(derivation, name)
+            builder.declare(sp.Symbol(name, real=True), Stage(Kind.STATE_LEG, leg_type))
+
+
+def _leg_type_of(derivation: Derivation, name: str) -> str:
+    if len(derivation.leg_types) == 1:
+        return derivation.leg_types[0].name
+    return next(t.name for t in derivation.leg_types if name.endswith(f"_{t.name}")
+                or f"_{t.name}_" in name)
+
+
+def _declare_state(builder: Builder, components: Iterable[Any]) -> None:
+    for component in components:
+        for symbol in getattr(component, "free_symbols", ()):
+            if not builder.is_declared(symbol):
+                builder.declare(symbol, Stage(Kind.STATE))
+
+
+def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
+    """Entries of an output array with the atoms that go there."""
+    value, b = output.value, lowering.b
+    components: dict[tuple[int, int], Atom]
+    from pne_sym.vector import Tensor, Vector
+
+    if isinstance(value, Tensor):
+        t = lowering.tensor(value, output.frame)
+        components = {(i, j): t[i][j] for i in range(3) for j in range(3)}
+    elif isinstance(value, Vector):
+        v = lowering.vector(value, output.frame)
+        along_columns = len(output.columns) > 1
+        components = {((0, k) if along_columns else (k, 0)): v[k] for k in range(3)}
+    else:
+        components = {(0, 0): lowering.scalar(sp.sympify(value))}
+    b.keep(components.values())
+    found = []
+    for (i, row), (j, column) in _pairs(output):
+        atom = components[i, j]
+        if output.symmetric and i > j:
+            continue
+        stage = b.stage_of(atom)
+        stage = stage if stage.depends_on_state else Stage(Kind.STATE)
+        if output.leg_type:
+            stage = Stage(Kind.STATE_LEG, output.leg_type)
+        places = [(row, column)]
+        if (output.mirrored or output.symmetric) and (row, column) != (column, row):
+            places.append((column, row))
+        elif output.mirrored and output.leg_rows != output.leg_columns:
+            places.append((column, row))
+        for k, (r, c) in enumerate(places):
+            swap = k == 1
+            legs_r = output.leg_columns if swap else output.leg_rows
+            legs_c = output.leg_rows if swap else output.leg_columns
+            found.append((stage, Store(output.array, atom, _place(r, legs_r, output),
+                                       _place(c, legs_c, output))))
+    return found
+
+
+def _pairs(output: Output) -> list[tuple[tuple[int, int], tuple[int, Any]]]:
+    columns: Sequence[tuple[int, Any]] = output.columns or ((0, None),)
+    return [(row, column) for row in output.rows for column in columns]
+
+
+def _place(position: int | None, per_leg: tuple[int, ...],
+           output: Output) -> int | tuple[int, ...] | None:
+    if position is None:
+        return None
+    if not output.leg_type or not per_leg:
+        return position
+    return tuple(position + k for k in per_leg)
+
+
+class _Slice:
+    """The statements that a function needs."""
+
+    def __init__(self, name: str, stores: list[tuple[Stage, Store]]) -> None:
+        self.name = name
+        self.stores = stores
+
+    def statements(self, builder: Builder) -> tuple[list[Statement], list[Any]]:
+        """Needed statements in order, and the guards that concern them."""
+        wanted = {s for _, store in self.stores for s in sp.sympify(store.value).free_symbols}
+        needed = _closure(builder, wanted)
+        equations = {s.equation for s in builder.statements if s.target in needed
+                     and s.stage.depends_on_state}
+        guards = [g for g in builder.guards
+                  if g.equation in equations and g.value.free_symbols <= needed | wanted]
+        extra = {s for g in guards for s in g.scale.free_symbols}
+        needed |= _closure(builder, extra) | extra
+        return [s for s in builder.statements if s.target in needed], guards
+
+
+def _closure(builder: Builder, wanted: set[Any]) -> set[Any]:
+    needed: set[Any] = set()
+    stack = list(wanted)
+    while stack:
+        symbol = stack.pop()
+        if symbol in needed:
+            continue
+        needed.add(symbol)
+        if symbol in builder.of:
+            stack.extend(builder.of[symbol].expr.free_symbols)
+    return needed
+
+
+def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> Program:
+    functions: dict[str, Function] = {}
+    prepared: set[Any] = set()
+    leg_types = [t.name for t in derivation.leg_types]
+    for part in slices:
+        statements, guards = part.statements(builder)
+        run = [s for s in statements if s.stage.depends_on_state]
+        stores = part.stores
+        run, stores, guards = inline_single_use(run, stores, guards, builder)
+        used = {s for st in run for s in st.expr.free_symbols}
+        used |= {s for _, store in stores for s in sp.sympify(store.value).free_symbols}
+        used |= {s for g in guards for e in (g.value, g.scale) for s in e.free_symbols}
+        prepared |= {s for s in used if not builder.stage_of(s).depends_on_state}
+        functions[part.name] = Function(part.name, (), (), _blocks(run, stores, guards, leg_types))
+    names = sorted(prepared, key=lambda s: s.name)
+    chain = _closure(builder, prepared)
+    statements = [s for s in builder.statements if s.target in chain]
+    statements, _, _ = inline_single_use(
+        statements, [(builder.stage_of(s), Store("model", s, 0)) for s in names], [], builder)
+    stores = [(builder.stage_of(s), Store(s.name, s, 0)) for s in names]
+    prepare = Function("prepare", (), (), _blocks(statements, stores, [], leg_types,
+                                                  parameters=True))
+    listed = tuple((s.name, builder.stage_of(s).leg_type) for s in names)
+    return Program(prepare, listed, functions)
+
+
+def _blocks(statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any],
+            leg_types: list[str], *, parameters: bool = False) -> tuple[Block, ...]:
+    kinds = (Kind.PARAMETER, Kind.PARAMETER_LEG, Kind.PARAMETER_TOTAL) if parameters else (
+        Kind.STATE, Kind.STATE_LEG, Kind.TOTAL)
+    stages = [Stage(kinds[0]), *(Stage(kinds[1], t) for t in leg_types), Stage(kinds[2])]
+    blocks = []
+    for stage in stages:
+        own = [s for s in statements if s.stage == stage and not s.total_of]
+        sums = tuple((s.target, s.expr) for s in statements
+                     if s.total_of and s.total_of == stage.leg_type)
+        blocks.append(Block(
+            stage.leg_type,
+            tuple(Assignment(s.target, s.expr, s.equation) for s in own),
+            tuple(Check(g.trouble, g.value, g.scale, g.power, g.equation)
+                  for g in guards if g.stage == stage),
+            sums,
+            tuple(store for at, store in stores if at == stage),
+        ))
+    return tuple(b for b in blocks if b.assignments or b.stores or b.sums or b.checks)

@@ -1,0 +1,70 @@
+"""Statements that only one other statement uses are written where they are used."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.lowering.builder import Builder, Statement, operations
+from pne_sym.program.ir import Stage, Store
+
+_LONGEST = 14  # operations in one statement: beyond it lines get hard to read
+
+
+def inline_single_use(
+    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any],
+    builder: Builder,
+) -> tuple[list[Statement], list[tuple[Stage, Store]], list[Any]]:
+    """Put unnamed values that are used once into the statement that uses them."""
+    uses: dict[Any, int] = {}
+    for statement in statements:
+        for symbol in statement.expr.free_symbols:
+            uses[symbol] = uses.get(symbol, 0) + _occurrences(statement.expr, symbol)
+    for _, store in stores:
+        for symbol in sp.sympify(store.value).free_symbols:
+            uses[symbol] = uses.get(symbol, 0) + 2  # outputs keep their names
+    for guard in guards:
+        for symbol in (*guard.value.free_symbols, *guard.scale.free_symbols):
+            uses[symbol] = uses.get(symbol, 0) + 2
+    inlined: dict[Any, Any] = {}
+    kept: list[Statement] = []
+    users = {symbol: s for s in statements for symbol in s.expr.free_symbols}
+    for statement in statements:
+        expr = _substitute(statement.expr, inlined)
+        if expr is None:
+            expr = statement.expr
+        user = users.get(statement.target)
+        if (
+            uses.get(statement.target) == 1
+            and not statement.total_of
+            and not statement.is_named
+            and user is not None
+            and user.stage == statement.stage
+            and not user.total_of
+            and operations(expr) <= _LONGEST
+            and _fits(user.expr, statement.target, expr)
+        ):
+            inlined[statement.target] = expr
+            continue
+        kept.append(Statement(statement.target, expr, statement.stage, statement.equation,
+                              statement.total_of, statement.is_named))
+    del builder
+    return kept, stores, guards
+
+
+def _occurrences(expr: Any, symbol: Any) -> int:
+    if expr == symbol:
+        return 1
+    return sum(_occurrences(arg, symbol) for arg in expr.args)
+
+
+def _fits(user: Any, target: Any, expr: Any) -> bool:
+    """Whether SymPy keeps the operation count when the value is put in place."""
+    combined = user.xreplace({target: expr})
+    return operations(combined) <= operations(user) + operations(expr) <= 2 * _LONGEST
+
+
+def _substitute(expr: Any, inlined: dict[Any, Any]) -> Any:
+    replacement = {s: inlined[s] for s in expr.free_symbols if s in inlined}
+    return expr.xreplace(replacement) if replacement else expr

@@ -1,0 +1,32 @@
+"""The driver: manipulator -> derivation -> program -> texts.  Pure; nothing touches the disk."""
+
+from __future__ import annotations
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.registry import BACKENDS
+from pne_sym.lowering.program import lower
+from pne_sym.mechanics.derive import derive
+from pne_sym.model.manipulator import Manipulator
+
+
+def compile_bundle(manipulator: Manipulator) -> Bundle:
+    """Derive and lower a manipulator.
+
+    Raises:
+        SpecError: the mechanism is outside the method; the message says why.
+    """
+    derivation = derive(manipulator)
+    return Bundle(manipulator, derivation, lower(derivation))
+
+
+def compile_model(manipulator: Manipulator) -> dict[str, str]:
+    """All files of a model's folder: file name -> text.
+
+    Raises:
+        SpecError: the mechanism is outside the method; the message says why.
+    """
+    bundle = compile_bundle(manipulator)
+    files: dict[str, str] = {}
+    for backend in BACKENDS:
+        files.update(backend.emit(bundle))
+    return dict(sorted(files.items()))
