@@ -25,7 +25,12 @@ _XYZ = "xyz"
 
 
 class Lowering:
-    """Components of the quantities of one derivation."""
+    """Components of the quantities of one derivation.
+
+    Vectors pass from frame to frame joint by joint, or, after `form_tip_axes`, through
+    the axes of each leg's last link in base axes.  Which is cheaper depends on how many
+    vectors pass, so callers try both.
+    """
 
     def __init__(self, derivation: Derivation, builder: Builder) -> None:
         self.d = derivation
@@ -208,9 +213,30 @@ class Lowering:
         if origin == target or all(c == 0 for c in v):
             return v
         makers = [lambda: self._by_steps(v, origin, target, hint)]
-        if target == "base" and sum(c != 0 for c in v) <= 3 and origin != "platform":
+        if origin == "base" and self._has_columns(target):
+            makers.append(lambda: self._by_rows(v, target, hint))
+        if target == "base" and origin != "platform":
             makers.append(lambda: self._by_columns(v, origin, target, hint))
         return self.cheapest(makers)  # type: ignore[no-any-return]
+
+    def _has_columns(self, frame: str) -> bool:
+        return all((frame, "base", k) in self._axis_columns for k in range(3))
+
+    def form_tip_axes(self) -> None:
+        """Form the axes of each leg's last link in base axes before anything else."""
+        for basis in self.d.bases:
+            frame = basis.frames[0]
+            for vector in basis.vectors:
+                self.ensure(getattr(vector, "name", ""))
+            along = [k for k in range(3) if self._vector_along(frame, "base", k) is not None]
+            for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:
+                self.b.keep(self.axis_column(frame, "base", k))
+
+    def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
+        axes = [self.axis_column(frame, "base", k) for k in range(3)]
+        return tuple(  # type: ignore[return-value]
+            self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_{_XYZ[k]}")
+            for k, axis in enumerate(axes))
 
     def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
         steps = self.frames.steps(origin, target)

@@ -10,6 +10,7 @@ import sympy as sp
 from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.builder import Atom, Builder, Statement
 from pne_sym.lowering.components import Lowering
+from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.lowering.simplify import inline_single_use
 from pne_sym.program.ir import (
     Assignment,
@@ -17,6 +18,7 @@ from pne_sym.program.ir import (
     Check,
     Function,
     Kind,
+    LegInput,
     Program,
     Stage,
     Store,
@@ -45,16 +47,38 @@ def lower(derivation: Derivation) -> Program:
     _declare(derivation, builder)
     slices = []
     for group in GROUPS:
-        lowering = Lowering(derivation, builder)
-        builder.live = set()
-        stores = {output: _stores(lowering, output) for output in derivation.outputs
-                  if any(output.array in arrays for _, arrays in group)}
+        stores = _cheapest_stores(derivation, builder, {a for _, names in group for a in names})
         for name, arrays in group:
             chosen = [(stage, store) for output, found in stores.items()
                       if output.array in arrays for stage, store in found]
             if chosen:
-                slices.append(_Slice(name, chosen))
+                present = {store.array for _, store in chosen}
+                slices.append(_Slice(name, tuple(a for a in arrays if a in present), chosen))
     return _program(derivation, builder, slices)
+
+
+def _cheapest_stores(derivation: Derivation, builder: Builder,
+                     arrays: set[str]) -> dict[Output, list[tuple[Stage, Store]]]:
+    """Lower the outputs of a group with each choice of rotations; keep the cheaper."""
+    outputs = [o for o in derivation.outputs if o.array in arrays]
+
+    def run(*, columns: bool) -> tuple[int, dict[Output, list[tuple[Stage, Store]]]]:
+        builder.live = set()
+        lowering = Lowering(derivation, builder)
+        if columns:
+            lowering.form_tip_axes()
+        stores = {output: _stores(lowering, output) for output in outputs}
+        builder.live = set()
+        return builder.cost([s.value for found in stores.values() for _, s in found]), stores
+
+    mark = builder.mark()
+    step_cost, _ = run(columns=False)
+    builder.rollback(mark)
+    column_cost, stores = run(columns=True)
+    if step_cost <= column_cost:
+        builder.rollback(mark)
+        _, stores = run(columns=False)
+    return stores
 
 
 def _declare(derivation: Derivation, builder: Builder) -> None:
@@ -148,8 +172,10 @@ def _place(position: int | None, per_leg: tuple[int, ...],
 class _Slice:
     """The statements that a function needs."""
 
-    def __init__(self, name: str, stores: list[tuple[Stage, Store]]) -> None:
+    def __init__(self, name: str, arrays: tuple[str, ...],
+                 stores: list[tuple[Stage, Store]]) -> None:
         self.name = name
+        self.arrays = arrays
         self.stores = stores
 
     def statements(self, builder: Builder) -> tuple[list[Statement], list[Any]]:
@@ -185,23 +211,82 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
     for part in slices:
         statements, guards = part.statements(builder)
         run = [s for s in statements if s.stage.depends_on_state]
-        stores = part.stores
-        run, stores, guards = inline_single_use(run, stores, guards, builder)
-        used = {s for st in run for s in st.expr.free_symbols}
-        used |= {s for _, store in stores for s in sp.sympify(store.value).free_symbols}
-        used |= {s for g in guards for e in (g.value, g.scale) for s in e.free_symbols}
-        prepared |= {s for s in used if not builder.stage_of(s).depends_on_state}
-        functions[part.name] = Function(part.name, (), (), _blocks(run, stores, guards, leg_types))
+        run = inline_single_use(run, part.stores, guards)
+        used = _used(run, part.stores, guards)
+        constants = {s for s in used if not builder.stage_of(s).depends_on_state}
+        prepared |= constants
+        blocks = _blocks(run, part.stores, guards, leg_types)
+        functions[part.name] = _function(derivation, builder, part, blocks, used, constants)
     names = sorted(prepared, key=lambda s: s.name)
     chain = _closure(builder, prepared)
-    statements = [s for s in builder.statements if s.target in chain]
-    statements, _, _ = inline_single_use(
-        statements, [(builder.stage_of(s), Store("model", s, 0)) for s in names], [], builder)
     stores = [(builder.stage_of(s), Store(s.name, s, 0)) for s in names]
-    prepare = Function("prepare", (), (), _blocks(statements, stores, [], leg_types,
-                                                  parameters=True))
+    statements = inline_single_use([s for s in builder.statements if s.target in chain], stores, [])
+    prepare = _blocks(statements, stores, [], leg_types, parameters=True)
     listed = tuple((s.name, builder.stage_of(s).leg_type) for s in names)
-    return Program(prepare, listed, functions)
+    return Program(prepare, listed, functions, _shapes(derivation))
+
+
+def _used(statements: list[Statement], stores: list[tuple[Stage, Store]],
+          guards: list[Any]) -> set[Any]:
+    expressions = [s.expr for s in statements]
+    expressions += [sp.sympify(store.value) for _, store in stores]
+    expressions += [e for g in guards for e in (g.value, g.scale)]
+    return {symbol for e in expressions for symbol in e.free_symbols}
+
+
+def _function(derivation: Derivation, builder: Builder, part: _Slice, blocks: tuple[Block, ...],
+              used: set[Any], constants: set[Any]) -> Function:
+    assert derivation.coordinates is not None
+    inputs, assignments, checks = [], [], []
+    for vector, (named, conditions) in unpack(derivation.coordinates).items():
+        wanted = [a for a in named if a.target in used]
+        chain = {a.target for a in named} & _closure_of(named, {a.target for a in wanted})
+        own = [a for a in named if a.target in chain]
+        if own:
+            inputs.append(vector)
+            assignments += own
+            checks += [c for c in conditions if c.value in chain]
+    per_leg: dict[str, list[LegInput]] = {}
+    for symbol in sorted(used, key=lambda s: s.name):
+        stage = builder.stage_of(symbol)
+        if stage.kind is Kind.STATE_LEG and symbol not in builder.of:
+            vector, indices = leg_inputs(derivation, symbol.name, stage.leg_type)
+            per_leg.setdefault(stage.leg_type, []).append(LegInput(symbol, vector, indices))
+            if vector not in inputs:
+                inputs.append(vector)
+    tables = {t.name: tuple(sorted(s.name for s in constants if builder.stage_of(s).leg_type == t.name))
+              for t in derivation.leg_types}
+    return Function(
+        part.name, tuple(v for v in "XVA" if v in inputs), part.arrays,
+        tuple(assignments), tuple(checks), blocks,
+        {t: tuple(found) for t, found in per_leg.items()},
+        tuple(sorted(s.name for s in constants if not builder.stage_of(s).per_leg)), tables)
+
+
+def _closure_of(assignments: list[Assignment], wanted: set[Any]) -> set[Any]:
+    made = {a.target: a.expr for a in assignments}
+    needed: set[Any] = set()
+    stack = list(wanted)
+    while stack:
+        symbol = stack.pop()
+        if symbol not in needed:
+            needed.add(symbol)
+            stack.extend(made[symbol].free_symbols if symbol in made else ())
+    return needed
+
+
+def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
+    """Shape of every output array."""
+    assert derivation.coordinates is not None
+    n = derivation.coordinates.sizes
+    legs = sum(len(t.indices) for t in derivation.leg_types)
+    return {
+        "M": (n["NV"], n["NV"]), "Z": (n["NV"],), "H": (n["NV"], n["NU"]),
+        "Hk": (n["NV"], n["NC"]), "required": (n["NV"],), "q": (n["NJ"],), "qd": (n["NJ"],),
+        "qdd": (n["NJ"],), "leg_force": (legs, 3), "drive": (n["NU"], 3),
+        "constraint_direction": (n["NC"], 3), "potential": (1,), "constraints": (n["NC"],),
+        "constraint_bias": (n["NC"],),
+    }
 
 
 def _blocks(statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any],

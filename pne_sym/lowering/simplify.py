@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.lowering.builder import Builder, Statement, operations
+from pne_sym.lowering.builder import Statement, operations
 from pne_sym.program.ir import Stage, Store
 
 _LONGEST = 14  # operations in one statement: beyond it lines get hard to read
@@ -14,8 +14,7 @@ _LONGEST = 14  # operations in one statement: beyond it lines get hard to read
 
 def inline_single_use(
     statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any],
-    builder: Builder,
-) -> tuple[list[Statement], list[tuple[Stage, Store]], list[Any]]:
+) -> list[Statement]:
     """Put unnamed values that are used once into the statement that uses them."""
     uses: dict[Any, int] = {}
     for statement in statements:
@@ -32,8 +31,6 @@ def inline_single_use(
     users = {symbol: s for s in statements for symbol in s.expr.free_symbols}
     for statement in statements:
         expr = _substitute(statement.expr, inlined)
-        if expr is None:
-            expr = statement.expr
         user = users.get(statement.target)
         if (
             uses.get(statement.target) == 1
@@ -49,8 +46,7 @@ def inline_single_use(
             continue
         kept.append(Statement(statement.target, expr, statement.stage, statement.equation,
                               statement.total_of, statement.is_named))
-    del builder
-    return kept, stores, guards
+    return kept
 
 
 def _occurrences(expr: Any, symbol: Any) -> int:

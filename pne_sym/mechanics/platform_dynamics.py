@@ -275,8 +275,7 @@ class PlatformWriter:
             w: Any = motion.w[j]
             self._force_column("H", leg, w, f"H_a_{j}", rf"\mathbf H_{{\alpha,{j}}}", places)
             book.outputs.append(Output(
-                "drive", w, tuple((c, c) for c in range(3)), ((0, 0),), leg.name, (),
-                places))
+                "drive", w, ((0, 0),), tuple((c, c) for c in range(3)), leg.name, places))
         for k, other, rows in self._extras():
             if k is not leg:
                 continue

@@ -147,21 +147,46 @@ class Counts:
 
 
 @dataclass(frozen=True)
+class LegInput:
+    """An entry of an input vector that belongs to a leg.
+
+    Attributes:
+        symbol: its name in the leg loop.
+        vector: "X", "V" or "A".
+        indices: index in the vector, per leg.
+    """
+
+    symbol: sp.Symbol
+    vector: str
+    indices: tuple[int, ...]
+
+
+@dataclass(frozen=True)
 class Function:
     """A generated computation: inputs to output arrays.
 
     Attributes:
         name: such as "dynamics".
-        inputs: names of input vectors, in order ("X", "V", "A").
-        arrays: output arrays (name, shape).
+        inputs: names of input vectors that are read, in order ("X", "V", "A").
+        arrays: names of the output arrays, in order.
+        unpack: names the entries of the inputs (rotation matrix from a
+            quaternion and the like); counted apart.
+        unpack_checks: what the inputs must satisfy.
         blocks: in order of execution.
-        prepared: names of prepared values that it reads.
+        leg_inputs: inputs per leg, by leg type.
+        shared: prepared values that it reads, not per leg.
+        per_leg: prepared values that it reads per leg, by leg type.
     """
 
     name: str
     inputs: tuple[str, ...]
-    arrays: tuple[tuple[str, tuple[int, ...]], ...]
+    arrays: tuple[str, ...]
+    unpack: tuple[Assignment, ...]
+    unpack_checks: tuple[Check, ...]
     blocks: tuple[Block, ...]
+    leg_inputs: dict[str, tuple[LegInput, ...]] = field(default_factory=dict)
+    shared: tuple[str, ...] = ()
+    per_leg: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -169,11 +194,13 @@ class Program:
     """All functions of a model and the preparation of its parameters.
 
     Attributes:
-        prepare: computes the prepared values from the parameters.
-        prepared: prepared values read at run time: (name, leg type or "").
+        prepare: blocks that compute the prepared values from the parameters.
+        prepared: prepared values that functions read: (name, leg type or "").
         functions: by name.
+        shapes: shape of each output array.
     """
 
-    prepare: Function
+    prepare: tuple[Block, ...]
     prepared: tuple[tuple[str, str], ...]
     functions: dict[str, Function] = field(default_factory=dict)
+    shapes: dict[str, tuple[int, ...]] = field(default_factory=dict)
