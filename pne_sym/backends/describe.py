@@ -1,0 +1,161 @@
+"""What several back ends say alike: summary, parameters, equation titles, counts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.derivation import Coordinates, Derivation, ParameterField
+from pne_sym.program.count import count_function
+
+
+@dataclass(frozen=True)
+class FieldView:
+    """One parameter, ready to print.
+
+    Attributes:
+        name, unit, meaning: as in the derivation.
+        shape: with the legs first, such as (6, 3).
+        rows: default values, one text per leg (or one in all).
+        zeros: flat indices that are zero by structure.
+        rule: what its values must satisfy: "rotation", "inertia", "mass", "unit" or "".
+        per_leg: whether the first index runs over the legs of a type.
+    """
+
+    name: str
+    unit: str
+    meaning: str
+    shape: tuple[int, ...]
+    rows: tuple[str, ...]
+    zeros: tuple[int, ...]
+    rule: str
+    per_leg: bool
+
+    @property
+    def shape_text(self) -> str:
+        """The shape for a docstring."""
+        return f"shape {self.shape}" if self.shape else "a number"
+
+
+@dataclass(frozen=True)
+class Described:
+    """Facts about a model that generated files state.
+
+    Attributes:
+        name, title: of the manipulator; the title is safe in comments.
+        upper: name in capitals, prefix of C macros.
+        sizes: NQ, NV, NU, NC, NW, NJ.
+        coordinates: names and order.
+        pose_text, rate_text, tau_text, wrench_text: contents of X, V, tau, wrench.
+        counts: (function, mul, add, div, sqrt, trig).
+        driven_rows: rows of H or Hk that can be other than zero.
+        free_rows: rows of extra coordinates that no drive acts on.
+        has_rotation, has_quaternion, is_constrained, is_redundant, has_extras: features.
+        legs: number of legs.
+    """
+
+    name: str
+    title: str
+    upper: str
+    sizes: dict[str, int]
+    coordinates: Coordinates
+    pose_text: str
+    rate_text: str
+    tau_text: str
+    wrench_text: str
+    counts: tuple[tuple[str, int, int, int, int, int], ...]
+    driven_rows: tuple[int, ...]
+    free_rows: tuple[int, ...]
+    legs: int
+
+    @property
+    def has_rotation(self) -> bool:
+        """Whether orientation is a coordinate."""
+        return any(c >= 3 for c in self.coordinates.components)
+
+    @property
+    def has_quaternion(self) -> bool:
+        """Whether orientation is a quaternion."""
+        return self.coordinates.has_quaternion
+
+    @property
+    def is_constrained(self) -> bool:
+        """Whether there are multipliers."""
+        return self.sizes["NC"] > 0
+
+    @property
+    def is_redundant(self) -> bool:
+        """Whether there are more drives than driven rows."""
+        return self.sizes["NU"] + self.sizes["NC"] > len(self.driven_rows)
+
+    @property
+    def has_extras(self) -> bool:
+        """Whether there are extra coordinates."""
+        return bool(self.coordinates.extras)
+
+
+def safe_text(text: str) -> str:
+    """A user's text, harmless in C comments, Python docstrings and Markdown."""
+    kept = "".join(ch if ch.isprintable() and ch not in '\\`*_<>{}[]$"#|~^&' else " " for ch in text)
+    return " ".join(kept.replace("/", " / ").split())[:200]
+
+
+def describe(bundle: Bundle) -> Described:
+    """Facts about a compiled manipulator."""
+    c = bundle.coordinates
+    extra = tuple(f"leg{i + 1}_joint{j + 1}" for i, j in c.extras)
+    counts = []
+    driven = _driven_rows(bundle)
+    for function in bundle.program.functions.values():
+        n = count_function(function, bundle.leg_counts)
+        counts.append((function.name, n.mul, n.add, n.div, n.sqrt, n.trig))
+    return Described(
+        bundle.name, safe_text(bundle.manipulator.title), bundle.name.upper(), c.sizes, c,
+        ", ".join((*c.pose, *extra)), ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
+        ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators), ", ".join(c.wrench),
+        tuple(counts), driven, tuple(k for k in range(len(c.rates), c.sizes["NV"])
+                                     if k not in driven), len(bundle.manipulator.legs))
+
+
+def _driven_rows(bundle: Bundle) -> tuple[int, ...]:
+    """Rows of H or Hk in which something stands."""
+    rows = set()
+    for name in ("H", "Hk"):
+        if name not in bundle.program.functions:
+            continue
+        for block in bundle.program.functions[name].blocks:
+            for store in block.stores:
+                rows |= set(store.row) if isinstance(store.row, tuple) else {store.row}
+    return tuple(sorted(rows))
+
+
+def equation_titles(derivation: Derivation) -> dict[str, str]:
+    """Equation id -> title."""
+    return {e.id: e.title for e in derivation.equations()}
+
+
+def field_views(bundle: Bundle) -> tuple[FieldView, ...]:
+    """All parameters, ready to print."""
+    return tuple(_field(f) for f in bundle.derivation.parameters.fields)
+
+
+def _field(f: ParameterField) -> FieldView:
+    rows = [_literal(row) for row in f.default] if f.leg_type else [_literal(f.default)]
+    shape = (len(f.default), *f.shape) if f.leg_type else f.shape
+    return FieldView(f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, _rule(f),
+                     f.leg_type is not None)
+
+
+def _rule(f: ParameterField) -> str:
+    if f.name.endswith("_base_frame"):
+        return "rotation"
+    if f.name.endswith("_inertia"):
+        return "inertia"
+    if f.name.endswith("_mass") and not f.shape:
+        return "mass"
+    return "unit" if f.name.endswith("_axis") else ""
+
+
+def _literal(value: object) -> str:
+    """Nested list of floats, shortest digits that read back the same."""
+    return repr(value.tolist() if hasattr(value, "tolist") else value).replace("-0.0,", "0.0,")

@@ -1,0 +1,114 @@
+"""LaTeX names of quantities taken apart and put together: base, subscript, superscript."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+_GROUP = re.compile(r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}")
+_TOKEN = re.compile(r"\\[A-Za-z]+\s?|\\.|[^\\{}]")
+_WORD = re.compile(r"\\[A-Za-z]+\s*")
+
+
+@dataclass(frozen=True)
+class Glyph:
+    r"""A symbol with its scripts, such as \mathbf h with subscript 2.
+
+    >>> str(Glyph.of(r"\mathbf h_{2}").tilde().indexed("i"))
+    '\\tilde{\\mathbf h}_{2,i}'
+    """
+
+    base: str
+    sub: str = ""
+    sup: str = ""
+
+    @staticmethod
+    def of(latex: str) -> Glyph:
+        """Parse the LaTeX of a symbol; scripts are those outside all braces."""
+        base, sub, sup = "", "", ""
+        at = 0
+        while at < len(latex):
+            mark = latex[at]
+            if mark == "'":
+                sup, at = sup + r"\prime", at + 1
+            elif mark in "_^":
+                script, at = _argument(latex, at + 1)
+                if mark == "_":
+                    sub += script
+                else:
+                    sup += script
+            else:
+                piece, at = _piece(latex, at)
+                base += piece
+        return Glyph(base, sub, sup)
+
+    def tilde(self) -> Glyph:
+        """With the tilde of a cross-product tensor."""
+        return replace(self, base=rf"\tilde{{{self.base}}}")
+
+    def perp(self) -> Glyph:
+        """Turned by a right angle."""
+        return replace(self, sub=f"{self.sub}\\perp")
+
+    def indexed(self, index: str) -> Glyph:
+        """With one more index."""
+        return replace(self, sub=f"{self.sub},{index}" if self.sub else index)
+
+    def raised(self, exponent: str) -> str:
+        """To a power, in brackets where a superscript stands already."""
+        if self.sup:
+            return f"({self})^{_braced(exponent)}"
+        return str(replace(self, sup=exponent))
+
+    def __str__(self) -> str:
+        text = self.base
+        if self.sub:
+            text += f"_{_braced(self.sub)}"
+        if self.sup:
+            text += f"^{_braced(self.sup)}"
+        return text
+
+
+def _braced(script: str) -> str:
+    return script if len(script) == 1 else f"{{{script}}}"
+
+
+def _argument(latex: str, at: int) -> tuple[str, int]:
+    """The argument of a script: a group, a command or one character."""
+    group = _GROUP.match(latex, at)
+    if group:
+        return group.group()[1:-1], group.end()
+    token = _TOKEN.match(latex, at)
+    if token is None:
+        raise ValueError(f"a script without argument in {latex!r}")
+    return token.group().strip(), token.end()
+
+
+def _piece(latex: str, at: int) -> tuple[str, int]:
+    """A group or a token of the base."""
+    group = _GROUP.match(latex, at)
+    if group:
+        return group.group(), group.end()
+    token = _TOKEN.match(latex, at)
+    if token is None:
+        raise ValueError(f"unbalanced braces in {latex!r}")
+    return token.group(), token.end()
+
+
+def visible_width(latex: str) -> float:
+    """Rough width of a formula in characters; scripts count less, fractions once.
+
+    >>> visible_width(r"\\mathbf a\\times\\mathbf b")
+    3.0
+    """
+    text = re.sub(r"\\(?:mathbf|boldsymbol|mathrm|mathsf|mathfrak|tilde|d?dot|left|right)\s*", "", latex)
+    fraction = re.compile(r"\\[td]?frac(\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})(" + _GROUP.pattern + ")")
+    scripts = 0.0
+    while match := fraction.search(text):
+        wider = max(match.group(1), match.group(2), key=visible_width)
+        text = text[: match.start()] + wider + text[match.end() :]
+    for script in re.findall(r"[_^](" + _GROUP.pattern + r"|\\[A-Za-z]+|.)", text):
+        scripts += 0.6 * len(_WORD.sub("x", script).strip("{}"))
+    text = re.sub(r"[_^](?:" + _GROUP.pattern + r"|\\[A-Za-z]+|.)", "", text)
+    text = re.sub(r"\\[,;!]", "", text)
+    return len(re.sub(r"[{}&\s]", "", _WORD.sub("x", text))) + scripts

@@ -1,0 +1,299 @@
+"""The LaTeX printer of vector, tensor and scalar expressions.
+
+Vectors and tensors are bold (their LaTeX says so), a tilde makes the tensor of
+a cross product, divisions are fractions, roots of a . a are norms, and signs
+stand between the terms of a sum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.backends.glyphs import Glyph
+from pne_sym.vector import nodes as n
+
+_SUM, _CROSS, _PRODUCT, _ATOM = range(4)
+
+
+@dataclass(frozen=True)
+class Term:
+    """A term of a sum.
+
+    Attributes:
+        text: LaTeX without the sign.
+        negative: whether it is subtracted.
+        level: how tightly the text binds.
+    """
+
+    text: str
+    negative: bool = False
+    level: int = _ATOM
+
+    def signed(self, *, first: bool) -> str:
+        """The term with the sign that it needs at its place."""
+        if first:
+            return f"-{self.text}" if self.negative else self.text
+        return f"{'-' if self.negative else '+'} {self.text}"
+
+
+class LatexPrinter:
+    """Prints expressions with the notation of a derivation.
+
+    Args:
+        symbols: LaTeX by name.
+        per_leg: names that stand for one value per leg; inside a sum over legs
+            they carry the leg's index.
+        legs: leg type -> LaTeX of what the index of a sum runs over.
+        indexed: names per leg carry the index everywhere.
+    """
+
+    def __init__(
+        self, symbols: Mapping[str, str], per_leg: frozenset[str] = frozenset(),
+        legs: Mapping[str, str] | None = None, *, indexed: bool = False,
+    ) -> None:
+        self.symbols = symbols
+        self.per_leg = per_leg
+        self.legs = dict(legs or {})
+        self.indexed = indexed
+
+    def with_index(self) -> LatexPrinter:
+        """The same printer with the leg's index on names per leg."""
+        return LatexPrinter(self.symbols, self.per_leg, self.legs, indexed=True)
+
+    def doprint(self, expr: Any) -> str:
+        """An expression on one line."""
+        return join_terms(self.terms(expr))
+
+    def terms(self, expr: Any) -> tuple[Term, ...]:
+        """The terms of a sum, or the expression as the only one."""
+        if isinstance(expr, n.VectorAdd | n.TensorAdd):
+            return tuple(self._term(arg) for arg in expr.args)
+        expr = expr if isinstance(expr, n.Vector | n.Tensor) else sp.sympify(expr)
+        if isinstance(expr, sp.Add):
+            found = [self._term(arg) for arg in sp.ordered(expr.args)]
+            return tuple(sorted(found, key=lambda term: term.negative))
+        return (self._term(expr),)
+
+    def glyph(self, expr: Any) -> Glyph:
+        """A symbol's LaTeX, taken apart.
+
+        Raises:
+            KeyError: the notation does not know the name.
+        """
+        glyph = Glyph.of(self.symbols[expr.name])
+        return glyph.indexed("i") if self.indexed and expr.name in self.per_leg else glyph
+
+    # ---- terms and factors -------------------------------------------------------------
+
+    def _term(self, expr: Any) -> Term:
+        if isinstance(expr, n.VectorScale | n.TensorScale):
+            return self._scaled(*expr.args)
+        if isinstance(expr, n.VectorLegSum | n.TensorLegSum | n.LegSum):
+            return self._leg_sum(*expr.args)
+        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.PlaneCross):
+            return self._node(expr)
+        if isinstance(expr, sp.Symbol):
+            return self._symbol(expr)
+        return self._scaled(expr, None)
+
+    def _node(self, expr: Any) -> Term:
+        if isinstance(expr, n.VectorSymbol | n.TensorSymbol):
+            return self._symbol(expr)
+        if isinstance(expr, n.VectorAdd | n.TensorAdd):
+            return Term(self.doprint(expr), level=_SUM)
+        printer = self._printers().get(type(expr))
+        if printer is None:
+            raise TypeError(f"no LaTeX for {type(expr).__name__}")
+        return printer(*expr.args)
+
+    def _printers(self) -> dict[type, Callable[..., Term]]:
+        return {
+            type(n.ZeroVector): lambda: Term(r"\mathbf 0"),
+            type(n.ZeroTensor): lambda: Term(r"\mathbf 0"),
+            type(n.Identity): lambda: Term(r"\mathbf E"),
+            n.Cross: lambda a, b: self._between(a, r"\times", b),
+            n.PlaneCross: lambda a, b: self._between(a, r"\times", b),
+            n.Dot: self._dot,
+            n.Perp: self._perp,
+            n.Skew: self._skew,
+            n.Apply: self._juxtaposed,
+            n.Compose: self._juxtaposed,
+            n.Outer: lambda a, b: Term(
+                rf"{self.factor(a)}\,{self._transposed(b)}", level=_PRODUCT),
+            n.Transpose: lambda a: Term(self._transposed(a)),
+            n.Axial: lambda a: Term(rf"\mathrm{{ax}}{brackets(self.doprint(a))}"),
+        }
+
+    def _symbol(self, expr: Any) -> Term:
+        return Term(str(self.glyph(expr)))
+
+    def factor(self, expr: Any) -> str:
+        """An expression as a factor of a product, in brackets where needed."""
+        terms = self.terms(expr)
+        if len(terms) == 1 and not terms[0].negative and terms[0].level >= _PRODUCT:
+            return terms[0].text
+        return brackets(join_terms(terms))
+
+    def _operand(self, expr: Any, *, left: bool) -> str:
+        """An operand of a cross or scalar product."""
+        terms = self.terms(expr)
+        least = _ATOM if left else _PRODUCT
+        if len(terms) == 1 and not terms[0].negative and terms[0].level >= least:
+            return terms[0].text
+        return brackets(join_terms(terms))
+
+    def _between(self, a: Any, sign: str, b: Any) -> Term:
+        left, right = self._operand(a, left=True), self._operand(b, left=False)
+        return Term(f"{left}{sign} {right}" if right[0].isalpha() else f"{left}{sign}{right}",
+                    level=_CROSS)
+
+    def _juxtaposed(self, a: Any, b: Any) -> Term:
+        return Term(rf"{self.factor(a)}\,{self.factor(b)}", level=_PRODUCT)
+
+    def _dot(self, a: Any, b: Any) -> Term:
+        if a == b:
+            return Term(rf"{norm_bars(self.doprint(a))}^2")
+        return self._between(a, r"\cdot", b)
+
+    def _perp(self, a: Any) -> Term:
+        if isinstance(a, n.VectorSymbol):
+            return Term(str(self.glyph(a).perp()))
+        return Term(f"{brackets(self.doprint(a))}_\\perp")
+
+    def _skew(self, a: Any) -> Term:
+        if isinstance(a, n.VectorSymbol):
+            return Term(str(self.glyph(a).tilde()))
+        return Term(rf"\widetilde{{{brackets(self.doprint(a))}}}")
+
+    def _transposed(self, a: Any) -> str:
+        if isinstance(a, n.VectorSymbol | n.TensorSymbol):
+            return self.glyph(a).raised(r"\mathsf T")
+        if isinstance(a, n.Identity.__class__):
+            return r"\mathbf E"
+        return rf"{brackets(self.doprint(a))}^{{\mathsf T}}"
+
+    def _leg_sum(self, value: Any, leg_type: Any) -> Term:
+        terms = self.with_index().terms(value)
+        negative = all(term.negative for term in terms)
+        if negative:
+            terms = tuple(Term(term.text, level=term.level) for term in terms)
+        body = join_terms(terms)
+        if len(terms) > 1:
+            body = brackets(body)
+        index = self.legs.get(str(leg_type), "i")
+        return Term(rf"\sum_{{{index}}} {body}", negative, _CROSS)
+
+    # ---- products with scalar factors -----------------------------------------------------
+
+    def _scaled(self, factor: Any, of: Any) -> Term:
+        """A scalar product, or a scalar times a vector or tensor (`of`)."""
+        factor = sp.sympify(factor)
+        number, numerator, denominator = _split(factor)
+        negative = bool(number < 0)
+        number = abs(number)
+        over = [self._scalar_factor(*item) for item in numerator]
+        under = [self._scalar_factor(*item) for item in denominator]
+        if number.q != 1:
+            under.insert(0, str(number.q))
+        if number.p != 1:
+            over.insert(0, str(number.p))
+        if under:
+            return self._fraction(over, under, of, negative)
+        if of is None:
+            return self._product(over, numerator, negative)
+        sole = self._term(of)
+        text = sole.text if sole.level >= _CROSS and not sole.negative else brackets(self.doprint(of))
+        level = sole.level if sole.level < _PRODUCT and text == sole.text else _PRODUCT
+        return Term(r"\,".join([*over, text]), negative, level if over else sole.level)
+
+    def _product(self, over: Sequence[str], items: Sequence[Any], negative: bool) -> Term:
+        if not over:
+            return Term("1", negative)
+        if len(over) == 1 and len(items) == 1:
+            base, exponent = items[0]
+            if exponent == 1 and isinstance(base, n.Dot | n.PlaneCross | sp.Add):
+                sole = self._node(base) if not isinstance(base, sp.Add) else Term(
+                    self.doprint(base), level=_SUM)
+                return Term(sole.text, negative, sole.level)
+        return Term(r"\,".join(over), negative, _ATOM if len(over) == 1 else _PRODUCT)
+
+    def _fraction(self, over: list[str], under: list[str], of: Any, negative: bool) -> Term:
+        below = r"\,".join(under)
+        if len(under) == 1:
+            below = _unbracketed(below)
+        if of is not None and not over:
+            return Term(rf"\frac{{{self.doprint(of)}}}{{{below}}}", negative)
+        above = r"\,".join(over) if over else "1"
+        if len(over) == 1:
+            above = _unbracketed(above)
+        text = rf"\frac{{{above}}}{{{below}}}"
+        if of is None:
+            return Term(text, negative)
+        return Term(rf"{text}\,{self.factor(of)}", negative, _PRODUCT)
+
+    def _scalar_factor(self, base: Any, exponent: Any) -> str:
+        """base^exponent, exponent positive."""
+        if exponent == sp.Rational(1, 2):
+            if isinstance(base, n.Dot) and base.args[0] == base.args[1]:
+                return norm_bars(self.doprint(base.args[0]))
+            return rf"\sqrt{{{self.doprint(base)}}}"
+        if isinstance(base, sp.Symbol):
+            glyph = self.glyph(base)
+            return str(glyph) if exponent == 1 else glyph.raised(str(exponent))
+        if base.func in _FUNCTIONS:
+            arguments = r",\,".join(self.doprint(arg) for arg in base.args)
+            text = f"{_FUNCTIONS[base.func]}{brackets(arguments)}"
+        else:
+            terms = self.terms(base)
+            alone = len(terms) == 1 and terms[0].level >= _PRODUCT and not terms[0].negative
+            text = terms[0].text if alone else brackets(join_terms(terms))
+        return text if exponent == 1 else f"{brackets(text)}^{{{exponent}}}"
+
+
+_FUNCTIONS: dict[Any, str] = {
+    sp.sin: r"\sin", sp.cos: r"\cos", sp.atan2: r"\mathrm{atan2}", sp.acos: r"\arccos",
+}
+
+
+def _split(factor: Any) -> tuple[Any, list[tuple[Any, Any]], list[tuple[Any, Any]]]:
+    """Number, factors above and factors below the line, each as (base, exponent)."""
+    number, above, below = sp.S.One, [], []
+    for arg in sp.Mul.make_args(factor):
+        if arg.is_Number:
+            number *= arg
+            continue
+        base, exponent = arg.as_base_exp() if arg.is_Pow else (arg, sp.S.One)
+        (below if exponent < 0 else above).append((base, abs(exponent)))
+    above.sort(key=lambda item: isinstance(item[0], n.Dot | n.PlaneCross | sp.Add))
+    return number, above, below
+
+
+def join_terms(terms: Sequence[Term]) -> str:
+    """Terms on one line."""
+    return " ".join(term.signed(first=k == 0) for k, term in enumerate(terms))
+
+
+def brackets(text: str) -> str:
+    """In round brackets, as high as what they hold."""
+    return rf"\left({text}\right)" if r"\frac" in text or r"\sum" in text else f"({text})"
+
+
+def norm_bars(text: str) -> str:
+    r"""Length of a vector; \lVert is safe in tables, where "|" is not."""
+    return rf"\lVert {text}\rVert"
+
+
+def _unbracketed(text: str) -> str:
+    """Without round brackets around the whole."""
+    if text.startswith("(") and text.endswith(")"):
+        depth = 0
+        for k, mark in enumerate(text):
+            depth += (mark == "(") - (mark == ")")
+            if depth == 0 and k < len(text) - 1:
+                return text
+        return text[1:-1]
+    return text

@@ -1,0 +1,8 @@
+"""The back ends, in the order in which they run."""
+
+from __future__ import annotations
+
+from pne_sym.backends.bundle import Backend
+from pne_sym.backends.numpy_backend import NumpyBackend
+
+BACKENDS: tuple[Backend, ...] = (NumpyBackend(),)
