@@ -74,6 +74,9 @@ class LatexPrinter:
             return tuple(self._term(arg) for arg in expr.args)
         expr = expr if isinstance(expr, n.Vector | n.Tensor) else sp.sympify(expr)
         if isinstance(expr, sp.Add):
+            content, primitive = expr.primitive()
+            if content != 1:
+                return (self._scaled(content, primitive),)
             found = [self._term(arg) for arg in sp.ordered(expr.args)]
             return tuple(sorted(found, key=lambda term: term.negative))
         return (self._term(expr),)
@@ -172,8 +175,6 @@ class LatexPrinter:
     def _transposed(self, a: Any) -> str:
         if isinstance(a, n.VectorSymbol | n.TensorSymbol):
             return self.glyph(a).raised(r"\mathsf T")
-        if isinstance(a, n.Identity.__class__):
-            return r"\mathbf E"
         return rf"{brackets(self.doprint(a))}^{{\mathsf T}}"
 
     def _leg_sum(self, value: Any, leg_type: Any) -> Term:

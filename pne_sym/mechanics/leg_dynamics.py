@@ -186,7 +186,7 @@ class DynamicsWriter:
             rhs = value - self.p.gravity
             forms, rests = (form - self.p.gravity,), (rest - self.p.gravity,)
         return self.write.define(
-            f"a_{j}", rhs, rf"\mathbf a_{{{j}}}",
+            f"acc_{j}", rhs, rf"\mathbf a_{{{j}}}",
             f"acceleration of the reference point of link {j}, less gravity", Law.RATE,
             unit="m/s^2", coefficient_latex=rf"\mathbf V_{{{j}}}", body=frame,
             forms=forms, rest_forms=rests, reference="Eqs. 10, 11, 17, 18")

@@ -231,8 +231,8 @@ class _Builder:
                 zeros,
             )
             self.g.offset[j] = self.give(
-                f"a_{j}", self.g.frame("spec", self.g.group[j - 1]), components,
-                rf"\mathbf a_{{{j}}}", f"offset of {what}, fixed in link {j - 1}",
+                f"d_{j}", self.g.frame("spec", self.g.group[j - 1]), components,
+                rf"\mathbf d_{{{j}}}", f"offset of {what}, fixed in link {j - 1}",
             )
 
     def frames(self) -> None:
