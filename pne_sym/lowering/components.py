@@ -24,6 +24,10 @@ _MAX_TRIAL_DEPTH = 2
 _XYZ = "xyz"
 
 
+class _NotYetError(Exception):
+    """A value is asked for while it is being made: this way around does not lead there."""
+
+
 class Lowering:
     """Components of the quantities of one derivation.
 
@@ -44,6 +48,7 @@ class Lowering:
         self._scalars: dict[str, Atom] = {}
         self._undo: list[tuple[dict[Any, Any], Any]] = []
         self._depth = 0
+        self._in_progress: set[str] = set()
         self._dual = {w.name: (basis, k) for basis in derivation.bases
                       for k, w in enumerate(basis.duals)}
         self._named_parts = {(e.rhs.args[0].name, e.rhs.args[1]): e.name
@@ -59,15 +64,20 @@ class Lowering:
         self._undo.append((table, key))
         return value
 
-    def _attempt(self, make: Callable[[], Any]) -> tuple[int, Any]:
-        """Cost of making a value; nothing of it stays."""
+    def _attempt(self, make: Callable[[], Any]) -> tuple[float, Any]:
+        """Cost of making a value, infinite if it needs what is not known yet; nothing stays."""
         mark, undo, equation = self.b.mark(), len(self._undo), self.b.equation
-        self._depth += 1
-        value = make()
-        cost = self.b.cost(_atoms(value))
-        self._depth -= 1
+        depth, self._depth = self._depth, self._depth + 1
+        value: Any = None
+        cost = float("inf")
+        try:
+            value = make()
+            cost = self.b.cost(_atoms(value))
+        except _NotYetError:
+            pass
+        self._depth = depth
         for table, key in self._undo[undo:]:
-            del table[key]
+            table.pop(key, None)
         del self._undo[undo:]
         self.b.rollback(mark)
         self.b.equation = equation
@@ -75,8 +85,10 @@ class Lowering:
 
     def cheapest(self, makers: Sequence[Callable[[], Any]]) -> Any:
         """The value of the cheapest way; ties go to the first."""
-        if len(makers) == 1 or self._depth >= _MAX_TRIAL_DEPTH:
+        if len(makers) == 1:
             return makers[0]()
+        if self._depth >= _MAX_TRIAL_DEPTH:
+            return next((m for m in makers if self._attempt(m)[0] < float("inf")), makers[0])()
         costs = [self._attempt(make)[0] for make in makers]
         return makers[costs.index(min(costs))]()
 
@@ -86,7 +98,17 @@ class Lowering:
         """Lower a name's definition in its home frame, and what it needs before it."""
         if name in self.home or name in self._scalars or name not in self.definition:
             return
-        equation = self.definition[name]
+        if name in self._in_progress:
+            raise _NotYetError(name)
+        self._in_progress.add(name)
+        before = self.b.equation
+        try:
+            self._ensure_new(self.definition[name])
+        finally:
+            self._in_progress.discard(name)
+            self.b.equation = before
+
+    def _ensure_new(self, equation: Equation) -> None:
         needed = sorted(names_in(equation.rhs))
         optional = sorted(set().union(*(names_in(f) for f in equation.forms), set())
                           - set(needed))
@@ -94,12 +116,11 @@ class Lowering:
             self.ensure(other)
         for other in needed:
             self._keep(other)
-        before, self.b.equation = self.b.equation, equation.id
+        self.b.equation = equation.id
         self._lower(equation)
         for condition in equation.conditions:
             self.b.guard(condition.trouble.value, self.scalar(condition.value),
                          self.scalar(condition.scale), condition.power)
-        self.b.equation = before
 
     def _keep(self, name: str) -> None:
         if name in self._scalars:

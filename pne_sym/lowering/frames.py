@@ -29,10 +29,15 @@ class ConstantStep:
 
 @dataclass(frozen=True)
 class TurnStep:
-    """Turn about z: v_to = (c x + s y, c y - s x, z)."""
+    """Turn about z: v_to = (c x + sign s y, c y - sign s x, z).
 
-    c: Atom
-    s: Atom
+    Cosine and sine are looked up only when a component needs them: what lies along
+    the axis passes before the angle is known.
+    """
+
+    c: Any
+    s: Any
+    sign: int
 
 
 class Frames:
@@ -74,12 +79,12 @@ class Frames:
 
     def _to_child(self, frame: Frame) -> ConstantStep | TurnStep:
         if frame.angle is not None:
-            return TurnStep(self._scalar(frame.angle[0]), self._scalar(frame.angle[1]))
+            return TurnStep(*frame.angle, 1)
         return ConstantStep(_transpose(self.matrix(frame)))
 
     def _to_parent(self, frame: Frame) -> ConstantStep | TurnStep:
         if frame.angle is not None:
-            return TurnStep(self._scalar(frame.angle[0]), -self._scalar(frame.angle[1]))
+            return TurnStep(*frame.angle, -1)
         return ConstantStep(self.matrix(frame))
 
     def matrix(self, frame: Frame) -> Matrix:
@@ -124,8 +129,11 @@ class Frames:
         """Components after a step."""
         b, (x, y, z) = self.b, v
         if isinstance(step, TurnStep):
-            return (b.add((b.mul(step.c, x), b.mul(step.s, y)), f"{hint}_x"),
-                    b.add((b.mul(step.c, y), -b.mul(step.s, x)), f"{hint}_y"), z)
+            if x == 0 and y == 0:
+                return v
+            c, s = self._scalar(step.c), step.sign * self._scalar(step.s)
+            return (b.add((b.mul(c, x), b.mul(s, y)), f"{hint}_x"),
+                    b.add((b.mul(c, y), -b.mul(s, x)), f"{hint}_y"), z)
         return tuple(  # type: ignore[return-value]
             b.add([b.mul(step.matrix[i][k], v[k]) for k in range(3)], f"{hint}_{'xyz'[i]}")
             for i in range(3))

@@ -27,11 +27,11 @@ from pne_sym.program.ir import (
 # Arrays of each function; functions of one group are lowered together, so that they share
 # what they have in common.
 GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
-    (("dynamics", ("M", "Z", "H", "Hk")), ("M", ("M",)), ("Z", ("Z",)), ("H", ("H",)),
-     ("Hk", ("Hk",))),
+    (("dynamics", ("M", "Z", "H", "Hk", "constraint_bias")), ("M", ("M",)), ("Z", ("Z",)),
+     ("H", ("H",)), ("Hk", ("Hk",)), ("constraint_bias", ("constraint_bias",))),
     (("required", ("required", "H", "Hk")), ("inverse_kinematics", ("q",)),
-     ("joint_rates", ("qd",)), ("joint_accelerations", ("qdd",)),
-     ("legs", ("leg_force", "drive"))),
+     ("joint_rates", ("qd",)), ("joint_accelerations", ("qdd",)), ("constraints", ("constraints",)),
+     ("legs", ("leg_force", "drive", "constraint_direction"))),
     (("potential", ("potential",)),),
 )
 
@@ -127,7 +127,7 @@ def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
         components = {(i, j): t[i][j] for i in range(3) for j in range(3)}
     elif isinstance(value, Vector):
         v = lowering.vector(value, output.frame)
-        along_columns = len(output.columns) > 1
+        along_columns = output.rows == ((0, 0),) and output.columns not in ((), ((0, 0),))
         components = {((0, k) if along_columns else (k, 0)): v[k] for k in range(3)}
     else:
         components = {(0, 0): lowering.scalar(sp.sympify(value))}
@@ -135,8 +135,8 @@ def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
     found = []
     for (i, row), (j, column) in _pairs(output):
         atom = components[i, j]
-        if output.symmetric and i > j:
-            continue
+        if (output.symmetric and i > j) or atom == 0:
+            continue  # arrays start at zero
         stage = b.stage_of(atom)
         stage = stage if stage.depends_on_state else Stage(Kind.STATE)
         if output.leg_type:

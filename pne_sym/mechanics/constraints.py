@@ -20,7 +20,7 @@ def directions_left_out(
     An axis that is perpendicular to every v_j by structure serves as it is;
     otherwise the unit vector across is formed.
     """
-    axis = _axis_across(g, joints)
+    axis = axis_across(g, joints)
     if planar:
         return [_unit(book, g, "n_c", Cross(g.e[1], motion.v[joints[0]]))]
     if missing == 1:
@@ -33,7 +33,7 @@ def directions_left_out(
     return [axis, _unit(book, g, "n_c", Cross(axis, motion.v[joints[0]]))]
 
 
-def _axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:
+def axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:
     """A joint axis perpendicular to every velocity vector: e x r is across e itself."""
     for k in range(1, g.count + 1):
         if not g.turns(k):

@@ -6,6 +6,7 @@ from typing import Any
 
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
+from pne_sym.mechanics.constraints import axis_across
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import build_geometry
@@ -76,7 +77,11 @@ def _derive_leg(
         x = book.define(g.name("x_1"), x, r"\mathbf x_{1}",
                         "from the origin of joint 1 to the connection point", Law.GEOMETRY,
                         unit="m", body=g.frame("axes", 0))
-    inverse = invert(book, g, x)
+    freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
+    constrained = len(freedoms) < (2 if space.planar else 3)
+    normal = axis_across(g, freedoms) if constrained and not space.planar else None
+    inverse = invert(book, g, x, normal, constrained=constrained)
+    inverse.S = S
     for branch, signs in zip(inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True):
         book.parameters.add_branch(branch.symbol.name, leg_type.name, signs)
     book.leg_types.append(_info(leg_type, inverse))

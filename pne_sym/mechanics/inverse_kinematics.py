@@ -50,6 +50,7 @@ class InverseKinematics:
         reasons: why a joint has no closed form.
         branches: roots whose sign is that of home.
         x: from the origin of a joint to the connection point, seen from the base.
+        S: from the base point to the connection point.
     """
 
     q: dict[int, Any]
@@ -57,6 +58,7 @@ class InverseKinematics:
     reasons: dict[int, str]
     branches: list[Branch]
     x: dict[int, Vector]
+    S: Vector = ZeroVector
 
     @property
     def is_closed(self) -> bool:
@@ -64,24 +66,31 @@ class InverseKinematics:
         return not self.reasons
 
 
-def invert(book: Book, g: LegGeometry, x: Vector) -> InverseKinematics:
+def invert(book: Book, g: LegGeometry, x: Vector, normal: Vector | None = None,
+           *, constrained: bool = False) -> InverseKinematics:
     """Write the inverse kinematics of a leg.
 
     Args:
         book: the derivation being written; a chapter is open.
         g: geometry of the leg type.
         x: vector from the first joint's origin to the connection point.
+        normal: axis along which the leg's freedoms cannot move the connection point.
+        constrained: the leg has fewer freedoms than the connection point: off the
+            manifold the nearest closure is taken.
     """
-    solver = _Solver(book, g)
+    solver = _Solver(book, g, normal, constrained)
     for j in range(1, g.count + 1):
         x = solver.joint(j, x)
     return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches, solver.x)
 
 
 class _Solver:
-    def __init__(self, book: Book, g: LegGeometry) -> None:
+    def __init__(self, book: Book, g: LegGeometry, normal: Vector | None,
+                 constrained: bool) -> None:
         self.book = book
         self.g = g
+        self.normal = normal
+        self.constrained = constrained
         self.q: dict[int, Any] = {}
         self.methods: dict[int, str] = {}
         self.reasons: dict[int, str] = {}
@@ -94,10 +103,12 @@ class _Solver:
         self.x[j] = x
         if g.is_extra(j):
             x = self._given(j, x)
-        elif g.turns(j):
-            x = self._turn(j, x)
-        else:
+        elif g.acts_as_slide(j) or (j in g.pitch and not self._later(j)):
             self._slide(j, x)
+            if g.turns(j):
+                self._angle_of_displacement(j)
+        else:
+            x = self._turn(j, x)
         if not g.turns(j) or j in g.pitch:
             along = self.q[j] * g.pitch.get(j, 1)
             x = x - along * g.e[j]
@@ -116,10 +127,10 @@ class _Solver:
     def _invariant(self, j: int) -> tuple[str, Vector, Any] | None:
         """(method, vector u fixed in link j, value of u . x) for joint j."""
         g, later = self.g, self._later(j)
-        if any(k in g.pitch for k in later):
+        turning = [k for k in later if not g.acts_as_slide(k)]
+        sliding = [k for k in later if g.acts_as_slide(k)]
+        if any(k in g.pitch for k in turning):
             return None
-        turning = [k for k in later if g.turns(k)]
-        sliding = [k for k in later if not g.turns(k)]
         if turning and all(g.parallel(turning[0], k) for k in turning) and all(
             g.perpendicular(turning[0], k) for k in sliding
         ):
@@ -135,7 +146,7 @@ class _Solver:
 
     def _useful(self, j: int, k: int) -> bool:
         """Whether u = e_k tells joint j: not along its axis (R), not across it (P)."""
-        if self.g.turns(j):
+        if not self.g.acts_as_slide(j):
             return self.g.parallel(j, k) == 0
         return not self.g.perpendicular(j, k)
 
@@ -152,7 +163,7 @@ class _Solver:
 
     def _across_slide(self, j: int, p: int) -> tuple[str, Vector, Any] | None:
         g = self.g
-        if g.turns(j):
+        if not g.acts_as_slide(j):
             if g.parallel(j, p):
                 return None
             u: Vector = Cross(g.e[j], g.e[p])
@@ -171,7 +182,8 @@ class _Solver:
             return None
         centre = vector_sum(
             [*(g.offset[i] for i in range(j + 1, first + 1)),
-             *(self.q[i] * g.e[i] for i in range(j + 1, first) if not g.turns(i))]
+             *(self.q[i] * g.pitch.get(i, 1) * g.e[i] for i in range(j + 1, first)
+               if not g.turns(i) or i in g.pitch)]
         )
         return "sphere", centre, g.offset[g.count + 1]
 
@@ -336,7 +348,16 @@ class _Solver:
         k, l = Dot(tip, n), Dot(tip, m)
         length2 = self._scalar_parameter(f"uu_{j}", k**2 + l**2)
         self.methods[j] = "direct"
-        self._cosine_sine(j, (k * A + l * B) / length2, (k * B - l * A) / length2)
+        if not self.constrained:
+            self._cosine_sine(j, (k * A + l * B) / length2, (k * B - l * A) / length2)
+            return tip
+        squared = self._scalar(
+            f"rho2_{j}", (A**2 + B**2) * length2, rf"\rho_{{{j}}}^2", "squared amplitude", "m^4")
+        amplitude = self._scalar(
+            f"root_{j}", sp.sqrt(squared), rf"\rho_{{{j}}}",
+            "amplitude: off the manifold the nearest angle is taken", "m^2",
+            conditions=(Condition(Trouble.SINGULAR, squared, g.size**4, 2),))
+        self._cosine_sine(j, (k * A + l * B) / amplitude, (k * B - l * A) / amplitude)
         return tip
 
     def _given(self, j: int, x: Vector) -> Vector:
@@ -350,6 +371,13 @@ class _Solver:
         if not g.turns(j):
             self.q[j] = q
             return x
+        self.q[j] = q
+        self._angle_of_displacement(j)
+        return x
+
+    def _angle_of_displacement(self, j: int) -> None:
+        """Cosine and sine of a turning joint whose displacement is known."""
+        g, book, q = self.g, self.book, self.q[j]
         c0, s0 = g.zero_turn[j]
         for stem, rhs, what in (
             ("c", sp.cos(q) * c0 - sp.sin(q) * s0, "cosine"),
@@ -358,8 +386,6 @@ class _Solver:
             book.define(g.name(f"{stem}_{j}"), rhs, f"{stem}_{{{j}}}",
                         f"{what} of the angle of joint {j} from its reference direction",
                         Law.GEOMETRY)
-        self.q[j] = q
-        return x
 
     def _slide(self, j: int, x: Vector) -> None:
         g, e = self.g, self.g.e[j]
@@ -370,10 +396,13 @@ class _Solver:
             return
         method, u, value = found
         self.methods[j] = method
+        pitch = g.pitch.get(j, sp.S.One)
+        unit = "rad" if g.turns(j) else "m"
         if method != "sphere":
+            across = Dot(u, e) if u != e else sp.S.One
             self.q[j] = self.book.define(
-                g.name(f"q_{j}"), (Dot(u, x) - value) / (Dot(u, e) if u != e else 1),
-                f"q_{{{j}}}", f"displacement of joint {j}", Law.LOOP_CLOSURE, unit="m")
+                g.name(f"q_{j}"), (Dot(u, x) - value) / (across * pitch),
+                f"q_{{{j}}}", f"displacement of joint {j}", Law.LOOP_CLOSURE, unit=unit)
             return
         centre, tip = u, value
         y = x - centre
@@ -383,16 +412,18 @@ class _Solver:
                                  Law.GEOMETRY, unit="m")
         along = self._scalar(f"px_{j}", Dot(e, y), f"x_{{{j}}}", f"component along axis {j}")
         squared = along**2 - Dot(y, y) + Dot(tip, tip)
+        if self.normal is not None:  # only what lies across the direction left out can close
+            squared = squared + Dot(self.normal, y) ** 2 - Dot(self.normal, tip) ** 2
         discriminant = self._scalar(
             f"disc_{j}", squared, rf"\Delta_{{{j}}}",
             "discriminant of the distance equation", "m^2",
             conditions=(Condition(Trouble.UNREACHABLE, squared),))
         sigma = self._branch_symbol(j)
         q = sp.Symbol(g.name(f"q_{j}"), real=True)
-        self.branches.append(Branch(sigma, j, q - along))
+        self.branches.append(Branch(sigma, j, q * pitch - along))
         self.q[j] = self.book.define(
-            q.name, along + sigma * sp.sqrt(discriminant), f"q_{{{j}}}",
-            f"displacement of joint {j}", Law.LOOP_CLOSURE, unit="m")
+            q.name, (along + sigma * sp.sqrt(discriminant)) / pitch, f"q_{{{j}}}",
+            f"displacement of joint {j}", Law.LOOP_CLOSURE, unit=unit)
 
     def _numeric(self, j: int, reason: str = "") -> None:
         self.methods[j] = "numeric"

@@ -46,6 +46,7 @@ class LegGeometry:
             zero, and with extra joints at arbitrary displacements.
         canonical: canonical axes as columns in spec axes (legs, 3, 3), by group.
         zero_angle: (legs, 2) numeric (cos, sin) of zero_turn, by joint.
+        bent_helices: helical joints that turn the connection point about their axes.
         exact_frames: groups whose canonical axes are coordinate directions.
     """
 
@@ -64,6 +65,7 @@ class LegGeometry:
     canonical: dict[int, Array] = field(default_factory=dict)
     exact_frames: set[int] = field(default_factory=set)
     zero_angle: dict[int, Array] = field(default_factory=dict)
+    bent_helices: set[int] = field(default_factory=set)
 
     @property
     def count(self) -> int:
@@ -81,6 +83,17 @@ class LegGeometry:
     def turns(self, j: int) -> bool:
         """Whether joint j turns (opens a group)."""
         return self.kind(j) is not JointKind.PRISMATIC
+
+    def acts_as_slide(self, j: int) -> bool:
+        """Whether joint j moves the connection point along its axis only.
+
+        So does a slide, and a helical joint beyond which all offsets lie along its axis.
+        """
+        if not self.turns(j):
+            return True
+        if self.kind(j) is not JointKind.HELICAL or j in self.bent_helices:
+            return False
+        return True
 
     def is_extra(self, j: int) -> bool:
         """Whether joint j's displacement is a coordinate of its own."""
@@ -244,6 +257,7 @@ class _Builder:
             self._turn_frame(j, previous)
         for j in range(1, self.g.count + 1):
             self._give_axis(j)
+        self._note_helices()
 
     def _candidates(self, group: int) -> list[tuple[Any, Array]]:
         """Directions fixed in the group worth an axis: (spec components, numeric per leg)."""
@@ -392,6 +406,18 @@ class _Builder:
                              f"sine of the angle at zero displacement of joint {j}",
                              Law.GEOMETRY, parameter=True),
         )
+
+    def _note_helices(self) -> None:
+        """Helical joints whose turning moves the connection point."""
+        g = self.g
+        for j in g.pitch:
+            straight = all(
+                g.offset[i] == ZeroVector or (g.group[i - 1] == j and g.offset_is_zero(j, i)[:2]
+                                              == (True, True))
+                for i in range(j + 1, g.count + 2))
+            slides = all(not g.turns(i) and g.parallel(j, i) for i in range(j + 1, g.count + 1))
+            if not (straight and slides):
+                g.bent_helices.add(j)
 
     def _give_axis(self, j: int) -> None:
         """The axis vector e_j, in the frame where it is simplest."""

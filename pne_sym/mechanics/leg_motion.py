@@ -55,6 +55,8 @@ class LegMotion:
         known: linear forms of everything that depends on the acceleration.
         unknowns: a_p and the accelerations of the extra coordinates.
         ydd: accelerations of the extra coordinates, by joint.
+        gap: from the connection point as the links reach it to the platform's.
+        relative: acceleration of the connection point less the bias.
     """
 
     a_p: Any = None
@@ -74,6 +76,8 @@ class LegMotion:
     known: dict[Any, LinearForm] = field(default_factory=dict)
     unknowns: list[Any] = field(default_factory=list)
     ydd: dict[int, Any] = field(default_factory=dict)
+    gap: Any = None
+    relative: Any = None
 
 
 class LinearWriter:
@@ -141,6 +145,7 @@ class MotionWriter:
         self.book, self.g, self.p, self.space = book, g, platform, space
         self.q = inverse.q
         self.x = inverse.x
+        self.S = inverse.S
         self.motion = LegMotion()
 
     def write(self, prefix: str) -> LegMotion:
@@ -211,6 +216,9 @@ class MotionWriter:
             following = rods[j] = self._rod(j, following)
         for j in range(1, g.count + 1):
             self.motion.v[j] = self._velocity_vector(j, rods)
+        first = turning[0] if turning else None
+        reached = vector_sum((self.spans[0], rods[first] if first else ZeroVector))
+        self.motion.gap = self.S - reached
         self._basis()
         self._rates()
 
@@ -421,6 +429,7 @@ class MotionWriter:
                 "rel", target, r"\ddot{\mathbf S}'",
                 "acceleration of the connection point left to the joint accelerations",
                 Law.RATE, unit="m/s^2", coefficient_latex=r"\mathbf E", body=self.tip_frame())
+        motion.relative = target
         for j, dual in motion.w.items():
             motion.qdd[j] = writer.define(
                 f"qdd_{j}", Dot(dual, target), rf"\ddot q_{{{j}}}", f"acceleration of joint {j}",

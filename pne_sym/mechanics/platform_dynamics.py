@@ -307,6 +307,26 @@ class PlatformWriter:
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
                 self._force_column("Hk", leg, normal, f"Hk_a_{k + 1}",
                                    rf"\mathbf H_{{k\alpha,{k + 1}}}", places)
+                self._constraint(leg, k, normal, places)
+
+    def _constraint(self, leg: Leg, k: int, normal: Any, places: tuple[int, ...]) -> None:
+        """The constraint, and its second derivative (Eq. 37)."""
+        book, g, motion = self.book, leg.g, leg.motion
+        gap = book.define(
+            g.name(f"phi_c{k + 1}"), Dot(normal, motion.gap), rf"\phi_{{{k + 1}}}",
+            "distance by which the leg misses the connection point, along a direction left out",
+            Law.LOOP_CLOSURE, unit="m", reference="Eq. 37")
+        self._leg_scalar("constraints", leg, gap, places)
+        rest = motion.known[motion.relative].remainder if motion.relative in motion.known else (
+            motion.relative)
+        bias = book.define(
+            g.name(f"gamma_c{k + 1}"), Dot(normal, rest), rf"\gamma_{{{k + 1}}}",
+            "part of the constraint's second derivative that does not hold the acceleration",
+            Law.LOOP_CLOSURE, unit="m/s^2", reference="Eq. 37")
+        self._leg_scalar("constraint_bias", leg, bias, places)
+        book.outputs.append(Output(
+            "constraint_direction", normal, ((0, 0),), tuple((c, c) for c in range(3)), leg.name,
+            places))
 
     # ---- placing ---------------------------------------------------------------------
 
