@@ -1,0 +1,53 @@
+"""Closed-form dynamics of parallel manipulators: readable derivations, fast standalone code.
+
+The pipeline in one line each::
+
+    manipulator = pne_sym.load("stewart")        # data: a catalogue name or a spec file
+    derivation = pne_sym.derive(manipulator)     # named vector equations
+    program = pne_sym.lower(derivation)          # scalar straight-line code
+    files = pne_sym.compile_model(manipulator)   # NumPy, C, report, manifest: name -> text
+    pne_sym.generate("stewart", "generated")     # the same, written to generated/stewart/
+
+>>> import pne_sym
+>>> manipulator = pne_sym.load("planar_3rpr")
+>>> derivation = pne_sym.derive(manipulator)
+>>> print(derivation.definition("S").title)
+from the base point to the connection point
+>>> sorted(pne_sym.lower(derivation).functions)[:3]
+['H', 'M', 'Z']
+
+Names are looked up when they are used, so that importing the package is quick.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from pne_sym.generation import find as load
+    from pne_sym.generation import generate
+    from pne_sym.lowering.program import lower
+    from pne_sym.mechanics.derive import derive
+    from pne_sym.model.manipulator import Manipulator
+    from pne_sym.pipeline import compile_model
+
+_HOMES = {
+    "Manipulator": ("pne_sym.model.manipulator", "Manipulator"),
+    "compile_model": ("pne_sym.pipeline", "compile_model"),
+    "derive": ("pne_sym.mechanics.derive", "derive"),
+    "generate": ("pne_sym.generation", "generate"),
+    "load": ("pne_sym.generation", "find"),
+    "lower": ("pne_sym.lowering.program", "lower"),
+}
+
+__all__ = ["Manipulator", "compile_model", "derive", "generate", "load", "lower"]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name on first use."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'pne_sym' has no attribute {name!r}")
+    from importlib import import_module
+
+    module, attribute = _HOMES[name]
+    return getattr(import_module(module), attribute)

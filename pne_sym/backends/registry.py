@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pne_sym.backends.bundle import Backend
+from pne_sym.backends.manifest import ManifestBackend
 from pne_sym.backends.numpy_backend import NumpyBackend
 
-BACKENDS: tuple[Backend, ...] = (NumpyBackend(),)
+BACKENDS: tuple[Backend, ...] = (NumpyBackend(), ManifestBackend())
