@@ -217,8 +217,8 @@ class _Solver:
         unit = (sp.S.One, sp.S.Zero, sp.S.Zero)
         axes = []
         for stem, latex, components, what in (
-            ("ref", r"\mathbf x", unit, "reference direction of the angle"),
-            ("across", r"\mathbf y", (unit[1], unit[0], unit[1]), "across the reference direction"),
+            ("ref", r"\hat{\mathbf x}", unit, "reference direction of the angle"),
+            ("across", r"\hat{\mathbf y}", (unit[1], unit[0], unit[1]), "across the reference direction"),
         ):
             name = self.g.name(f"{stem}_{j}")
             symbol = VectorSymbol(name)
@@ -233,7 +233,7 @@ class _Solver:
         frame = self.g.frame("axes", j)
         axes = []
         for stem, latex, components in (
-            ("link_x", r"\mathbf x", (1, 0, 0)), ("link_y", r"\mathbf y", (0, 1, 0)),
+            ("link_x", r"\hat{\mathbf x}", (1, 0, 0)), ("link_y", r"\hat{\mathbf y}", (0, 1, 0)),
         ):
             name = self.g.name(f"{stem}_{j}")
             symbol = VectorSymbol(name)

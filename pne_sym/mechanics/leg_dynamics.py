@@ -274,7 +274,7 @@ class DynamicsWriter:
             axes.append(symbol)
         return self.book.define(
             self.g.name(f"trace_{J.name}"), sp.Add(*(Dot(a, J @ a) for a in axes)) / 2,
-            rf"\tfrac12\operatorname{{tr}}{self.book.notation[J.name].latex}",
+            self.book.notation[J.name].latex.replace(r"\mathbf J", "j"),
             f"half the trace of {J.name}", Law.LUMPING, unit="kg m^2", parameter=True)
 
     def run(self) -> LegDynamics:
@@ -366,7 +366,7 @@ class DynamicsWriter:
             f"Gamma_{j}", component, rf"\Gamma_{{{j}}}",
             f"{what[self.g.kind(j).value]} axis {j} of the distal links' inertia and weight",
             Law.FREEDOM, unit="N m" if self.g.turns(j) else "N",
-            coefficient_latex=rf"\mathbf c_{{{j}}}", reference="Sec. 2.2, joint table")
+            coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}", reference="Sec. 2.2, joint table")
 
     def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:
         """The leg's force on the platform, Eq. 3 and Eq. 4."""
@@ -388,7 +388,7 @@ class DynamicsWriter:
         c = self.write.define(
             "c", -(G + phi), r"\mathbf c",
             "leg force on the platform without actuation and without the mass at the connection "
-            "point", Law.REDUCTION, unit="N", coefficient_latex=r"-\mathbf Q'", body=frame,
+            "point", Law.REDUCTION, unit="N", coefficient_latex=r"\mathbf K", body=frame,
             reference="Eq. 3") if G + phi != ZeroVector else ZeroVector
         form = motion.known.get(c, LinearForm({}, ZeroVector))
         result.force, result.form = c, form

@@ -105,7 +105,7 @@ class LinearWriter:
                 coefficients[unknown] = value
                 continue
             first = unknown == motion.a_p
-            label = coefficient_latex if first else f"{latex}^{{({unknown.name})}}"
+            label = coefficient_latex if first else f"{latex}^{{(y_{unknown.name.split('_')[1]})}}"
             short = "d" if first else f"d{k}"
             coefficients[unknown] = book.define(
                 f"{short}_{name}", value, label,
