@@ -5,7 +5,9 @@ from __future__ import annotations
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.registry import BACKENDS
 from pne_sym.lowering.program import lower
+from pne_sym.lowering.solve import SingularPattern
 from pne_sym.mechanics.derive import derive
+from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import Manipulator
 
 
@@ -16,7 +18,12 @@ def compile_bundle(manipulator: Manipulator) -> Bundle:
         SpecError: the mechanism is outside the method; the message says why.
     """
     derivation = derive(manipulator)
-    return Bundle(manipulator, derivation, lower(derivation))
+    try:
+        program = lower(derivation)
+    except SingularPattern as error:
+        raise SpecError(manipulator.name, "legs", str(error),
+                        "legs whose freedoms are independent") from error
+    return Bundle(manipulator, derivation, program)
 
 
 def compile_model(manipulator: Manipulator) -> dict[str, str]:

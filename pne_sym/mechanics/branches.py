@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from pne_sym.derivation import Book
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.scope import turn
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Leg, Manipulator
 from pne_sym.vector.evaluate import evaluate
@@ -30,11 +31,11 @@ def branch_signs(
     rows = []
     for index, leg in zip(g.leg_type.indices, g.leg_type.legs, strict=True):
         q = np.array(manipulator.home.q[starts[index]:starts[index + 1]])
-        rows.append(_signs_of_leg(index, leg, q, g, inverse, book))
+        rows.append(_signs_of_leg(manipulator.name, index, leg, q, g, inverse, book))
     return [tuple(row[k] for row in rows) for k in range(len(inverse.branches))]
 
 
-def _signs_of_leg(index: int, leg: Leg, q: Array, g: LegGeometry, inverse: InverseKinematics,
+def _signs_of_leg(name: str, index: int, leg: Leg, q: Array, g: LegGeometry, inverse: InverseKinematics,
                   book: Book) -> list[int]:
     values = _values_at(leg, q, g, book, g.leg_type.legs.index(leg))
     for j in range(1, g.count + 1):
@@ -46,19 +47,20 @@ def _signs_of_leg(index: int, leg: Leg, q: Array, g: LegGeometry, inverse: Inver
     for equation in chapter:
         for symbol in branches.keys() - signs.keys():
             if symbol in getattr(equation.rhs, "free_symbols", ()):
-                signs[symbol] = _sign(index, branches[symbol].joint,
-                                      evaluate(branches[symbol].root, values))
+                signs[symbol] = _sign(
+                    name, index, branches[symbol].joint, evaluate(branches[symbol].root, values))
                 values[symbol.name] = float(signs[symbol])
         if equation.name not in values:
             values[equation.name] = evaluate(equation.rhs, values)
     return [signs[branch.symbol] for branch in inverse.branches]
 
 
-def _sign(index: int, joint: int, root: float) -> int:
+def _sign(name: str, index: int, joint: int, root: float) -> int:
     if not np.isfinite(root) or abs(root) < 1e-12:
         raise SpecError(
-            f"legs[{index}]: joint {joint} stands where two solutions of its inverse kinematics "
-            "meet at home; expected a home position off that singularity")
+            name, f"legs[{index}].joints[{joint - 1}]",
+            "two solutions of the inverse kinematics meet at home",
+            "a home position off that singularity")
     return 1 if root > 0 else -1
 
 
@@ -75,7 +77,7 @@ def _values_at(leg: Leg, q: Array, g: LegGeometry, book: Book, row: int) -> dict
             pitch = joint.pitch if joint.kind is JointKind.HELICAL else 1.0
             origin = origin + rotation @ axis * pitch * q[j - 1]
         if joint.kind is not JointKind.PRISMATIC:
-            rotation = rotation @ _turn(axis, q[j - 1])
+            rotation = rotation @ turn(axis, q[j - 1])
         spec.append(rotation)
         turned = np.einsum("ij,j->i", spec[-1], axis)
         values[g.e[j].name] = turned
@@ -99,7 +101,7 @@ def _frame_vectors(values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry,
         axes = spec[j] @ g.canonical[j][row]
         x_axis, e = axes[:, 0], axes[:, 2]
         cosine, sine = g.zero_angle[j][row]
-        before = spec[j] @ _turn(np.array(leg.joints[j - 1].axis), -q[j - 1])
+        before = spec[j] @ turn(np.array(leg.joints[j - 1].axis), -q[j - 1])
         zero = before @ g.canonical[j][row][:, 0]
         reference = cosine * zero - sine * np.cross(e, zero)
         values[g.name(f"ref_{j}")] = reference
@@ -108,8 +110,3 @@ def _frame_vectors(values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry,
         values[g.name(f"link_y_{j}")] = axes[:, 1]
         values[g.name(f"c_{j}")] = float(reference @ x_axis)
         values[g.name(f"s_{j}")] = float(e @ np.cross(reference, x_axis))
-
-
-def _turn(axis: Array, angle: float) -> Array:
-    k = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k)

@@ -13,8 +13,10 @@ from pne_sym.mechanics.leg_geometry import build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
+from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
+from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.vector import Dot, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
 
@@ -29,6 +31,8 @@ def derive(manipulator: Manipulator) -> Derivation:
     platform = introduce_platform(book, manipulator, space)
     types = leg_types(manipulator)
     legs = []
+    for leg_type in types:
+        check_scope(manipulator, leg_type, space)
     for leg_type in types:
         suffix = "" if len(types) == 1 else f"_{leg_type.name}"
         legs.append(_derive_leg(book, manipulator, space, platform, leg_type, suffix))
@@ -82,6 +86,12 @@ def _derive_leg(
     normal = axis_across(g, freedoms) if constrained and not space.planar else None
     inverse = invert(book, g, x, normal, constrained=constrained)
     inverse.S = S
+    if not inverse.is_closed:
+        joint, reason = min(inverse.reasons.items())
+        raise SpecError(
+            manipulator.name, f"legs[{leg_type.indices[0]}].joints[{joint - 1}]",
+            f"no closed form for this joint: {reason}",
+            "a chain whose inverse kinematics is closed")
     for branch, signs in zip(inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True):
         book.parameters.add_branch(branch.symbol.name, leg_type.name, signs)
     book.leg_types.append(_info(leg_type, inverse))

@@ -245,8 +245,6 @@ class MotionWriter:
         vectors: list[Any] = [motion.v[j] for j in joints]
         scales: list[Any] = [g.size if g.turns(j) else sp.S.One for j in joints]
         missing = (2 if self.space.planar else 3) - len(joints)
-        if missing < 0:
-            raise ValueError("more freedoms than coordinates: mark joints as extra")
         for k, normal in enumerate(self._left_out(joints, missing), 1):
             motion.normals.append(normal)
             vectors.append(normal)
