@@ -8,6 +8,12 @@ from dataclasses import dataclass, replace
 _GROUP = re.compile(r"\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\}")
 _TOKEN = re.compile(r"\\[A-Za-z]+\s?|\\.|[^\\{}]")
 _WORD = re.compile(r"\\[A-Za-z]+\s*")
+_INVISIBLE = re.compile(
+    r"\\(?:mathbf|boldsymbol|math(?:rm|sf|tt|frak)|(?:wide)?tilde|hat|d?dot|left|right)(?![a-z])\s*"
+    r"|\\[,;! ]"
+)
+_FRACTION = re.compile(rf"\\frac({_GROUP.pattern})({_GROUP.pattern})")
+_SCRIPT = re.compile(rf"[_^]({_GROUP.pattern}|\\[A-Za-z]+|.)")
 
 
 @dataclass(frozen=True)
@@ -96,19 +102,15 @@ def _piece(latex: str, at: int) -> tuple[str, int]:
 
 
 def visible_width(latex: str) -> float:
-    """Rough width of a formula in characters; scripts count less, fractions once.
+    r"""Rough width of a formula in characters; scripts count less, fractions once.
 
-    >>> visible_width(r"\\mathbf a\\times\\mathbf b")
-    3.0
+    >>> visible_width(r"\mathbf a\times\mathbf b")
+    3
     """
-    text = re.sub(r"\\(?:mathbf|boldsymbol|mathrm|mathsf|mathfrak|tilde|d?dot|left|right)\s*", "", latex)
-    fraction = re.compile(r"\\[td]?frac(\{(?:[^{}]|\{(?:[^{}]|\{[^{}]*\})*\})*\})(" + _GROUP.pattern + ")")
-    scripts = 0.0
-    while match := fraction.search(text):
+    text = _INVISIBLE.sub("{}", latex)
+    while match := _FRACTION.search(text):
         wider = max(match.group(1), match.group(2), key=visible_width)
         text = text[: match.start()] + wider + text[match.end() :]
-    for script in re.findall(r"[_^](" + _GROUP.pattern + r"|\\[A-Za-z]+|.)", text):
-        scripts += 0.6 * len(_WORD.sub("x", script).strip("{}"))
-    text = re.sub(r"[_^](?:" + _GROUP.pattern + r"|\\[A-Za-z]+|.)", "", text)
-    text = re.sub(r"\\[,;!]", "", text)
-    return len(re.sub(r"[{}&\s]", "", _WORD.sub("x", text))) + scripts
+    scripts = sum(0.6 * len(_WORD.sub("x", script).strip("{}")) for script in _SCRIPT.findall(text))
+    body = _WORD.sub("x", _SCRIPT.sub("", text))
+    return len(re.sub(r"[{}&\s]", "", body)) + scripts

@@ -52,8 +52,12 @@ class LatexPrinter:
     """
 
     def __init__(
-        self, symbols: Mapping[str, str], per_leg: frozenset[str] = frozenset(),
-        legs: Mapping[str, str] | None = None, *, indexed: bool = False,
+        self,
+        symbols: Mapping[str, str],
+        per_leg: frozenset[str] = frozenset(),
+        legs: Mapping[str, str] | None = None,
+        *,
+        indexed: bool = False,
     ) -> None:
         self.symbols = symbols
         self.per_leg = per_leg
@@ -87,8 +91,12 @@ class LatexPrinter:
         Raises:
             KeyError: the notation does not know the name.
         """
-        glyph = Glyph.of(self.symbols[expr.name])
-        return glyph.indexed("i") if self.indexed and expr.name in self.per_leg else glyph
+        return self.glyph_of(expr.name)
+
+    def glyph_of(self, name: str) -> Glyph:
+        """The LaTeX of a name, taken apart."""
+        glyph = Glyph.of(self.symbols[name])
+        return glyph.indexed("i") if self.indexed and name in self.per_leg else glyph
 
     # ---- terms and factors -------------------------------------------------------------
 
@@ -125,9 +133,8 @@ class LatexPrinter:
             n.Skew: self._skew,
             n.Apply: self._juxtaposed,
             n.Compose: self._juxtaposed,
-            n.Outer: lambda a, b: Term(
-                rf"{self.factor(a)}\,{self._transposed(b)}", level=_PRODUCT),
-            n.Transpose: lambda a: Term(self._transposed(a)),
+            n.Outer: lambda a, b: Term(rf"{self.factor(a)}\,{self.transposed(b)}", level=_PRODUCT),
+            n.Transpose: lambda a: Term(self.transposed(a)),
             n.Axial: lambda a: Term(rf"\mathrm{{ax}}{brackets(self.doprint(a))}"),
         }
 
@@ -151,8 +158,9 @@ class LatexPrinter:
 
     def _between(self, a: Any, sign: str, b: Any) -> Term:
         left, right = self._operand(a, left=True), self._operand(b, left=False)
-        return Term(f"{left}{sign} {right}" if right[0].isalpha() else f"{left}{sign}{right}",
-                    level=_CROSS)
+        return Term(
+            f"{left}{sign} {right}" if right[0].isalpha() else f"{left}{sign}{right}", level=_CROSS
+        )
 
     def _juxtaposed(self, a: Any, b: Any) -> Term:
         return Term(rf"{self.factor(a)}\,{self.factor(b)}", level=_PRODUCT)
@@ -172,7 +180,8 @@ class LatexPrinter:
             return Term(str(self.glyph(a).tilde()))
         return Term(rf"\widetilde{{{brackets(self.doprint(a))}}}")
 
-    def _transposed(self, a: Any) -> str:
+    def transposed(self, a: Any) -> str:
+        """The transpose of a vector or tensor."""
         if isinstance(a, n.VectorSymbol | n.TensorSymbol):
             return self.glyph(a).raised(r"\mathsf T")
         return rf"{brackets(self.doprint(a))}^{{\mathsf T}}"
@@ -207,7 +216,9 @@ class LatexPrinter:
         if of is None:
             return self._product(over, numerator, negative)
         sole = self._term(of)
-        text = sole.text if sole.level >= _CROSS and not sole.negative else brackets(self.doprint(of))
+        text = (
+            sole.text if sole.level >= _CROSS and not sole.negative else brackets(self.doprint(of))
+        )
         level = sole.level if sole.level < _PRODUCT and text == sole.text else _PRODUCT
         return Term(r"\,".join([*over, text]), negative, level if over else sole.level)
 
@@ -217,8 +228,11 @@ class LatexPrinter:
         if len(over) == 1 and len(items) == 1:
             base, exponent = items[0]
             if exponent == 1 and isinstance(base, n.Dot | n.PlaneCross | sp.Add):
-                sole = self._node(base) if not isinstance(base, sp.Add) else Term(
-                    self.doprint(base), level=_SUM)
+                sole = (
+                    self._node(base)
+                    if not isinstance(base, sp.Add)
+                    else Term(self.doprint(base), level=_SUM)
+                )
                 return Term(sole.text, negative, sole.level)
         return Term(r"\,".join(over), negative, _ATOM if len(over) == 1 else _PRODUCT)
 
@@ -256,13 +270,18 @@ class LatexPrinter:
 
 
 _FUNCTIONS: dict[Any, str] = {
-    sp.sin: r"\sin", sp.cos: r"\cos", sp.atan2: r"\mathrm{atan2}", sp.acos: r"\arccos",
+    sp.sin: r"\sin",
+    sp.cos: r"\cos",
+    sp.atan2: r"\mathrm{atan2}",
+    sp.acos: r"\arccos",
 }
 
 
 def _split(factor: Any) -> tuple[Any, list[tuple[Any, Any]], list[tuple[Any, Any]]]:
     """Number, factors above and factors below the line, each as (base, exponent)."""
-    number, above, below = sp.S.One, [], []
+    number = sp.S.One
+    above: list[tuple[Any, Any]] = []
+    below: list[tuple[Any, Any]] = []
     for arg in sp.Mul.make_args(factor):
         if arg.is_Number:
             number *= arg

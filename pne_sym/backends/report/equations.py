@@ -1,0 +1,161 @@
+"""The chapters of the derivation: numbered equations with law, reference, rules and remarks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.latex import LatexPrinter, Term
+from pne_sym.backends.report.blocks import block_statements, defines_blocks
+from pne_sym.backends.report.collected import Collected, collected_sum
+from pne_sym.backends.report.legforce import leg_force_statements
+from pne_sym.backends.report.markdown import display, inline, table, unit
+from pne_sym.backends.report.names import plain_names, printer_for
+from pne_sym.backends.report.view import ChapterView, EquationView, Statement, Table
+from pne_sym.derivation import (
+    Chapter,
+    Condition,
+    Derivation,
+    Equation,
+    ReciprocalBasis,
+    Trouble,
+)
+
+
+class ChapterWriter:
+    """Turns chapters into views."""
+
+    def __init__(self, bundle: Bundle, collected: Collected) -> None:
+        self.bundle = bundle
+        self.derivation: Derivation = bundle.derivation
+        self.collected = collected
+        self.plain = printer_for(self.derivation)
+        self.bases = {str(b.duals[-1].name): b for b in self.derivation.bases}
+
+    def chapters(self) -> tuple[ChapterView, ...]:
+        """All chapters, each with what it has led to."""
+        return tuple(self.chapter(chapter) for chapter in self.derivation.chapters)
+
+    def chapter(self, chapter: Chapter) -> ChapterView:
+        """One chapter."""
+        printer = self.plain if chapter.leg_type else self.plain.with_index()
+        return ChapterView(
+            f"chapter-{chapter.id}",
+            plain_names(chapter.title, self.derivation),
+            plain_names(chapter.text, self.derivation),
+            tuple(self.equation(e, printer) for e in chapter.equations),
+            tuple(self._statements(chapter)),
+        )
+
+    def _statements(self, chapter: Chapter) -> Iterator[Statement]:
+        same = [c for c in self.derivation.chapters if c.leg_type == chapter.leg_type]
+        if chapter.leg_type and chapter is same[-1]:
+            yield from leg_force_statements(
+                self.bundle, self.collected, chapter.leg_type, self.plain
+            )
+        if defines_blocks(self.derivation, chapter):
+            yield from block_statements(self.bundle, self.plain)
+
+    def equation(self, equation: Equation, printer: LatexPrinter) -> EquationView:
+        """One equation."""
+        return EquationView(
+            equation.id,
+            self._headline(equation, printer),
+            display(printer.doprint(equation.lhs), self._rows(equation, printer)),
+            self._steps(equation, printer),
+            tuple(self._remarks(equation, printer)),
+        )
+
+    def _rows(self, equation: Equation, printer: LatexPrinter) -> list[tuple[Term, ...]]:
+        """The right-hand side and what it is equal to."""
+        rows = [printer.terms(equation.rhs)]
+        for form in equation.forms:
+            terms = printer.terms(form)
+            if terms not in rows:
+                rows.append(terms)
+        return rows
+
+    def _headline(self, equation: Equation, printer: LatexPrinter) -> str:
+        origin = self.collected.origin.get(equation.id)
+        if origin is not None:
+            return self._part_headline(equation, origin, printer)
+        title = equation.title[:1].upper() + equation.title[1:]
+        reference = f", {equation.reference}" if equation.reference else ""
+        quantity = self.derivation.notation[equation.name]
+        measure = f" [{unit(quantity.unit)}]" if quantity.unit not in ("-", "") else ""
+        return f"{title}{measure}. *{_capital(equation.law.value)}{reference}.*"
+
+    def _part_headline(self, equation: Equation, origin: Equation, printer: LatexPrinter) -> str:
+        name = inline(printer.doprint(origin.lhs))
+        where = f"{name} ({origin.id})"
+        for unknown, value in self.collected.forms[origin.name].coefficients.items():
+            if value == equation.lhs:
+                return f"Coefficient of {inline(printer.doprint(unknown))} in {where}."
+        return f"Remainder of {where}."
+
+    def _steps(self, equation: Equation, printer: LatexPrinter) -> Table | None:
+        if not equation.steps:
+            return None
+        rows = [
+            (
+                step.rule.name,
+                inline(printer.doprint(step.before)),
+                inline(printer.doprint(step.after)),
+            )
+            for step in equation.steps
+        ]
+        return table(("Rule", "before", "after"), dict.fromkeys(rows))
+
+    def _remarks(self, equation: Equation, printer: LatexPrinter) -> Iterator[str]:
+        form = self.collected.forms.get(equation.name)
+        if form is not None:
+            terms = printer.terms(collected_sum(form))
+            if terms not in self._rows(equation, printer):
+                text = f"{printer.doprint(equation.lhs)} = " + " ".join(
+                    t.signed(first=k == 0) for k, t in enumerate(terms)
+                )
+                yield f"Collected by Rules I and II: {inline(text)}."
+        if equation.note:
+            yield equation.note
+        for condition in equation.conditions:
+            yield self._condition(equation, condition, printer)
+        if equation.name in self.bases:
+            yield basis_condition(self.bases[equation.name], printer)
+
+    def _condition(self, equation: Equation, condition: Condition, printer: LatexPrinter) -> str:
+        value = equation.lhs if condition.value == equation.rhs else condition.value
+        text = printer.doprint(value)
+        if condition.trouble is Trouble.UNREACHABLE:
+            return f"**Out of reach** where {inline(text + ' < 0')}."
+        return f"**Singular** where {inline(text)} vanishes."
+
+
+def basis_condition(basis: ReciprocalBasis, printer: LatexPrinter) -> str:
+    """Where the reciprocal vectors of a leg do not exist."""
+    vectors = [printer.doprint(v) for v in basis.vectors]
+    if len(vectors) == 3:
+        volume = rf"{vectors[0]}\cdot({vectors[1]}\times {vectors[2]})"
+    else:
+        volume = r"\times ".join(vectors)
+    return (
+        f"**Singular** where {inline(volume)} vanishes: the velocity vectors are not independent."
+    )
+
+
+def index_rows(derivation: Derivation, printer: LatexPrinter) -> Iterator[tuple[str, ...]]:
+    """Every defined symbol with its meaning, unit and equation."""
+    for chapter in derivation.chapters:
+        used = printer if chapter.leg_type else printer.with_index()
+        for equation in chapter.equations:
+            quantity: Any = derivation.notation[equation.name]
+            yield (
+                inline(used.doprint(equation.lhs)),
+                quantity.meaning,
+                unit(quantity.unit),
+                f"[{equation.id}](#{equation.id})",
+            )
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]

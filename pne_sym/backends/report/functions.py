@@ -1,0 +1,136 @@
+"""How the generated functions use the equations, what can fail, what it costs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.report.markdown import table
+from pne_sym.backends.report.names import leg_title
+from pne_sym.backends.report.view import Statement, Table
+from pne_sym.derivation import Trouble
+from pne_sym.program.count import count_block, count_function
+from pne_sym.program.ir import Block, Counts
+
+_COUNT_HEAD = ("mul", "add", "div", "sqrt", "sum", "trig")
+_R = r"\mathbf R(X, V, A)"
+_W = r"\mathbf W_{\mathrm{ext}}"
+
+
+def function_statements(bundle: Bundle) -> Iterator[Statement]:
+    """Inverse and forward dynamics, constraints, extra coordinates."""
+    sizes = bundle.coordinates.sizes
+    constrained = sizes["NC"] > 0
+    unknown = (
+        r"\begin{bmatrix}\mathbf H & \mathbf H_k\end{bmatrix}"
+        r"\begin{bmatrix}\boldsymbol\tau \\ \boldsymbol\lambda\end{bmatrix}"
+        if constrained
+        else r"\mathbf H\,\boldsymbol\tau"
+    )
+    yield Statement(
+        "**Inverse dynamics** goes the direct way of Eq. 3: accelerations are numbers, leg forces "
+        r"come out as numbers, and the platform's equilibrium gives what is required, "
+        r"$`\mathbf R`$ (its entries are those of chapter E); M is never formed."
+        + _least_norm(sizes),
+        (f"{unknown} = {_R} - {_W}",),
+    )
+    if constrained:
+        yield Statement(
+            "**Forward dynamics** solves the equations of motion together with the constraints, "
+            "differentiated twice:",
+            (
+                r"\begin{bmatrix}\mathbf M & -\mathbf H_k \\",
+                r"\mathbf H_k^{\mathsf T} & \mathbf 0\end{bmatrix}",
+                r"\begin{bmatrix}\mathbf A \\ \boldsymbol\lambda\end{bmatrix}",
+                rf"= \begin{{bmatrix}}\mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z \\",
+                r"-\boldsymbol\gamma\end{bmatrix},",
+                r"\qquad \mathbf H_k^{\mathsf T}\,\mathbf V = \mathbf 0,",
+                r"\quad \mathbf H_k^{\mathsf T}\,\mathbf A + \boldsymbol\gamma = \mathbf 0",
+            ),
+        )
+    else:
+        yield Statement(
+            "**Forward dynamics** solves the equations of motion for the acceleration:",
+            (rf"\mathbf M\,\mathbf A = \mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z",),
+        )
+    if any(
+        joint.extra and not joint.actuated
+        for leg in bundle.manipulator.legs
+        for joint in leg.joints
+    ):
+        yield Statement(
+            "**Extra coordinates without a drive** follow from their own rows (Eq. 7); "
+            "`complete_acceleration` fills in their accelerations before inverse dynamics:",
+            (r"\mathbf M_{yy}\,\ddot{\mathbf y} = -\mathbf M_{yx}\,\mathbf A_x - \mathbf Z_y",),
+        )
+
+
+def _least_norm(sizes: dict[str, int]) -> str:
+    if sizes["NU"] + sizes["NC"] > sizes["NV"]:
+        return " There are more unknowns than equations: of all solutions the smallest is taken."
+    return ""
+
+
+def troubles(bundle: Bundle) -> tuple[str, ...]:
+    """Impossible states, with the equations where they show."""
+    found: dict[Trouble, list[str]] = {}
+    for equation in bundle.derivation.equations():
+        for condition in equation.conditions:
+            found.setdefault(condition.trouble, []).append(equation.id)
+    bases = {b.id: str(b.duals[-1].name) for b in bundle.derivation.bases}
+    definitions = {e.name: e.id for e in bundle.derivation.equations()}
+    singular = [
+        *found.get(Trouble.SINGULAR, ()),
+        *(definitions[name] for name in bases.values() if name in definitions),
+    ]
+    lines = []
+    if Trouble.UNREACHABLE in found:
+        lines.append(
+            "**Out of reach**: no real root of "
+            f"{_links(found[Trouble.UNREACHABLE])}; no leg of this size gets there."
+        )
+    if singular:
+        lines.append(
+            f"**Singular leg**: a divisor of {_links(singular)} is (nearly) zero, measured "
+            "against the size of the leg."
+        )
+    lines += [
+        "**Singular drives**: H has no full rank; inverse dynamics needs that, M, Z and H do not.",
+        "**Invalid**: an entry of the input is not finite, or a quaternion is zero.",
+    ]
+    return tuple(lines)
+
+
+def _links(ids: list[str]) -> str:
+    return ", ".join(f"[{i}](#{i})" for i in dict.fromkeys(ids))
+
+
+def counts(bundle: Bundle) -> Table:
+    """Operations of every function."""
+    rows = [
+        _row(f"`{f.name}`", count_function(f, bundle.leg_counts))
+        for f in bundle.program.functions.values()
+    ]
+    return table(("Function", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
+
+
+def parts(bundle: Bundle) -> Table:
+    """Operations of every part of every function, for one leg where it is a leg's."""
+    rows = []
+    for function in bundle.program.functions.values():
+        for k, block in enumerate(function.blocks):
+            where = _where(bundle, function.blocks, k)
+            rows.append(_row(f"`{function.name}`: {where}", count_block(block)))
+    return table(("Part", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
+
+
+def _where(bundle: Bundle, blocks: tuple[Block, ...], at: int) -> str:
+    block = blocks[at]
+    if block.leg_type:
+        info = next(t for t in bundle.derivation.leg_types if t.name == block.leg_type)
+        return f"each {leg_title(info)} leg"
+    return "after the legs" if any(b.leg_type for b in blocks[:at]) else "before the legs"
+
+
+def _row(label: str, c: Counts) -> tuple[str, ...]:
+    return label, *(str(v) for v in (c.mul, c.add, c.div, c.sqrt, c.total, c.trig))

@@ -1,0 +1,182 @@
+"""Leg types: structure, given symbols, parameters, how each joint is solved."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.latex import LatexPrinter
+from pne_sym.backends.report.markdown import inline, table, unit
+from pne_sym.backends.report.mechanism import model_joints
+from pne_sym.backends.report.names import leg_title, per_leg_names
+from pne_sym.backends.report.view import LegView, Table
+from pne_sym.backends.report.words import KINDS, METHODS, PLATFORM_JOINTS
+from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField, names_in
+from pne_sym.model.manipulator import ZERO3, Joint, Vector3
+
+_TOLERANCE = 1e-9
+_AXES = "xyz"
+
+
+def leg_views(bundle: Bundle, printer: LatexPrinter) -> tuple[LegView, ...]:
+    """All leg types."""
+    return tuple(_leg(bundle, info, printer) for info in bundle.derivation.leg_types)
+
+
+def _leg(bundle: Bundle, info: LegTypeInfo, printer: LatexPrinter) -> LegView:
+    derivation = bundle.derivation
+    joints = model_joints(bundle.manipulator, info)
+    return LegView(
+        leg_title(info),
+        f"Legs {ranges([i + 1 for i in info.indices])}."
+        if len(info.indices) > 1
+        else f"Leg {info.indices[0] + 1}.",
+        table(
+            ("Joint", "Kind", "Role", "Axis", "To the axis before", "Offset", "Link"),
+            [_joint_row(joints, j) for j in range(len(joints))],
+        ),
+        tuple(_closing(bundle, info)),
+        tuple(_solved(info)),
+        table(("Symbol", "Meaning", "Unit"), _given_rows(derivation, info.name, printer)),
+        parameter_table(derivation, info.name),
+        f"`legs[i]` with i = {ranges(info.indices)}, counted from 0",
+    )
+
+
+def ranges(numbers: Sequence[int]) -> str:
+    """Numbers in short.
+
+    >>> ranges([1, 2, 3, 5])
+    '1 to 3, 5'
+    """
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    return ", ".join(f"{r[0]} to {r[-1]}" if len(r) > 1 else str(r[0]) for r in runs)
+
+
+# ---- structure -------------------------------------------------------------------------
+
+
+def _joint_row(joints: Sequence[Joint], at: int) -> tuple[str, ...]:
+    joint = joints[at]
+    before = joints[at - 1].axis if at else None
+    roles = [
+        word
+        for word, holds in (("driven", joint.actuated), ("extra coordinate", joint.extra))
+        if holds
+    ]
+    return (
+        str(at + 1),
+        KINDS[joint.kind.value],
+        ", ".join(roles) or "passive",
+        _axis(joint.axis),
+        _relation(before, joint.axis),
+        _offset(joint.offset),
+        "massless" if joint.link.is_massless else "with mass",
+    )
+
+
+def _axis(axis: Vector3) -> str:
+    for k, component in enumerate(axis):
+        if abs(abs(component) - 1) < _TOLERANCE:
+            return f"along {'-' if component < 0 else ''}{_AXES[k]}"
+    return "parameter"
+
+
+def _relation(before: Vector3 | None, axis: Vector3) -> str:
+    if before is None:
+        return "-"
+    along = sum(a * b for a, b in zip(before, axis, strict=True))
+    if abs(along) < _TOLERANCE:
+        return "perpendicular"
+    return "parallel" if abs(abs(along) - 1) < _TOLERANCE else "oblique"
+
+
+def _offset(offset: Vector3) -> str:
+    if offset == ZERO3:
+        return "none"
+    return "along " + ", ".join(_AXES[k] for k in range(3) if offset[k] != 0.0)
+
+
+def _closing(bundle: Bundle, info: LegTypeInfo) -> Iterator[str]:
+    """The platform joint, and the signs of the assembly branches."""
+    end = bundle.manipulator.legs[info.indices[0]].platform_joint
+    kind = PLATFORM_JOINTS[end.kind.value]
+    if bundle.coordinates.planar:
+        kind = "pin (the points coincide)"
+    offset = "" if end.offset == ZERO3 else f", offset {_offset(end.offset)}"
+    yield f"Platform joint: {kind}{offset}."
+    derivation = bundle.derivation
+    for name, (leg_type, signs) in derivation.parameters.branches.items():
+        if leg_type == info.name and name in derivation.notation:
+            symbol = inline(derivation.notation[name].latex)
+            yield f"Assembly branch {symbol}, as at home: {_signs(info, signs)}."
+
+
+def _signs(info: LegTypeInfo, signs: Sequence[int]) -> str:
+    if len(set(signs)) == 1:
+        return f"{signs[0]:+d} for every leg"
+    minus = [i + 1 for i, sign in zip(info.indices, signs, strict=True) if sign < 0]
+    return f"-1 for legs {ranges(minus)}, +1 for the others"
+
+
+def _solved(info: LegTypeInfo) -> Iterator[str]:
+    reasons = dict(info.reasons)
+    for j, method in enumerate(info.methods, 1):
+        words = METHODS.get(method, method).format(j=j, reason=reasons.get(j, ""))
+        yield f"Joint {j}: {words}."
+
+
+# ---- what is given ------------------------------------------------------------------------
+
+
+def platform_notation(derivation: Derivation, printer: LatexPrinter) -> Table:
+    """Given symbols that are not of a leg."""
+    return table(("Symbol", "Meaning", "Unit"), _given_rows(derivation, None, printer))
+
+
+def _given_rows(
+    derivation: Derivation, leg_type: str | None, printer: LatexPrinter
+) -> Iterator[tuple[str, ...]]:
+    """Symbols that equations use and none defines."""
+    per_leg = per_leg_names(derivation)
+    defined = {e.name for e in derivation.equations()}
+    chapters = [c for c in derivation.chapters if leg_type is None or c.leg_type == leg_type]
+    used = {
+        n
+        for c in chapters
+        for e in c.equations
+        for part in (e.rhs, *e.forms)
+        for n in names_in(part)
+    }
+    for name, quantity in derivation.notation.items():
+        if name in used and name not in defined and (name in per_leg) == (leg_type is not None):
+            yield inline(str(printer.glyph_of(name))), quantity.meaning, unit(quantity.unit)
+
+
+def parameter_table(derivation: Derivation, leg_type: str | None) -> Table:
+    """Live parameters, with their places in the full form."""
+    fields = [f for f in derivation.parameters.fields if f.leg_type == leg_type]
+    head = ("Name", "Meaning", "Unit", "Shape", "Path in the full form")
+    return table(head, (_parameter_row(f) for f in fields))
+
+
+def _parameter_row(field: ParameterField) -> tuple[str, ...]:
+    shape = ", ".join(map(str, field.shape))
+    path = field.paths[0]
+    if field.leg_type:
+        path = f"legs[i].{path.split('.', 1)[1]}"
+    meaning = field.meaning
+    if field.zeros and field.shape == (3,):
+        meaning += f"; zero along {', '.join(_AXES[k] for k in field.zeros)} by structure"
+    return (
+        f"`{field.name}`",
+        meaning,
+        unit(field.unit),
+        f"({shape})" if shape else "scalar",
+        f"`{path}`",
+    )

@@ -1,0 +1,134 @@
+"""What the mechanism is: summary, case of the paper, dimensions, order of all vectors."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.report.markdown import table, unit
+from pne_sym.backends.report.names import leg_title
+from pne_sym.backends.report.view import Table
+from pne_sym.backends.report.words import CASES, SPACES
+from pne_sym.derivation import LegTypeInfo
+from pne_sym.model.manipulator import Joint, JointKind, Manipulator
+
+_SIZES = {
+    "NQ": "size of X: coordinates of the platform, and extra coordinates",
+    "NV": "size of V and A, rows of M, Z and H",
+    "NU": "size of tau: actuators, columns of H",
+    "NC": "size of lambda: constraints, columns of Hk",
+    "NW": "size of a wrench",
+    "NJ": "size of q: displacements of all joints of the legs",
+}
+
+
+def summary(bundle: Bundle) -> str:
+    """What moves, what carries it, what drives it."""
+    manipulator = bundle.manipulator
+    parts = []
+    for info in bundle.derivation.leg_types:
+        count = len(info.indices)
+        parts.append(f"{count} {leg_title(info)} leg{'s' if count > 1 else ''}")
+    carried = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+    return (
+        f"The mechanism is {SPACES[manipulator.space.value]}, carried by {carried} in parallel. "
+        "R is a revolute joint, P a prismatic, H a helical, U a universal, C a cylindrical, "
+        "S a spherical one, named from the base to the platform; driven joints are underlined, "
+        "and a star marks a joint whose displacement is an extra coordinate."
+    )
+
+
+def cases(bundle: Bundle) -> tuple[str, ...]:
+    """The cases of section 3 of the paper that apply."""
+    sizes, manipulator = bundle.coordinates.sizes, bundle.manipulator
+    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
+    freedoms = sizes["NV"] - sizes["NC"]
+    found = []
+    if any(joint.extra and joint.actuated for joint in joints):
+        found.append("3.5")
+    if any(joint.extra and not joint.actuated for joint in joints):
+        found.append("3.6")
+    if sizes["NC"]:
+        found.append("3.7")
+    if len(manipulator.legs) > freedoms:
+        found.append("3.3")
+    if sizes["NU"] > freedoms and max(drives) > 1:
+        found.append("3.4")
+    elif max(drives) > 1 and "3.5" not in found:
+        found.append("3.2")
+    return tuple(CASES[case] for case in (found or ["3.1"]))
+
+
+def sizes(bundle: Bundle) -> Table:
+    """Dimensions."""
+    values = bundle.coordinates.sizes
+    rows = [(f"`{key}`", _SIZES[key], str(values[key])) for key in _SIZES]
+    return table(("Name", "Meaning", "Value"), rows, numbers=1)
+
+
+def orders(bundle: Bundle) -> Table:
+    """What the entries of all vectors are, in which order."""
+    return table(("Vector", "Entries, in this order"), _order_rows(bundle))
+
+
+def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
+    c, manipulator = bundle.coordinates, bundle.manipulator
+    extra = _per_type(bundle, lambda joint: joint.extra, _displacement)
+    pose, rates = _listed(c.pose), _listed(c.rates)
+    if c.extras:
+        pose += f"; then the extra coordinates: {extra}"
+        rates += "; then those of the extra coordinates"
+    yield "X", pose
+    yield "V, A", f"{rates} (A: their derivatives)"
+    yield "tau", _per_type(bundle, lambda joint: joint.actuated, _effort) or "none"
+    yield "q", _per_type(bundle, lambda _: True, _displacement)
+    if c.constraints:
+        yield "lambda", ("reactions along the directions that the legs leave out, leg by leg (N)")
+    yield "wrench", f"{_listed(c.wrench)}: external force and moment on the platform"
+    del manipulator
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(names)
+
+
+def _displacement(joint: Joint) -> str:
+    return "m" if joint.kind is JointKind.PRISMATIC else "rad"
+
+
+def _effort(joint: Joint) -> str:
+    return "N" if joint.kind is JointKind.PRISMATIC else "N m"
+
+
+def _per_type(bundle: Bundle, pick: object, measure: object) -> str:
+    """Joints picked, by leg type: one statement for all legs of the type."""
+    assert callable(pick)
+    assert callable(measure)
+    parts = []
+    for info in bundle.derivation.leg_types:
+        joints = model_joints(bundle.manipulator, info)
+        chosen = [
+            f"{j} ({unit(measure(joint))})" for j, joint in enumerate(joints, 1) if pick(joint)
+        ]
+        if chosen:
+            word = "joints" if len(chosen) > 1 else "joint"
+            parts.append(f"of every {leg_title(info)} leg {word} {', '.join(chosen)}")
+    return "; ".join(parts) + ("; legs in their order" if parts else "")
+
+
+def model_joints(manipulator: Manipulator, info: LegTypeInfo) -> tuple[Joint, ...]:
+    """Joints of the leg whose structure stands for its type."""
+    return manipulator.legs[info.indices[0]].joints
+
+
+def equation_of_motion(bundle: Bundle) -> tuple[str, ...]:
+    """The result, Eq. 5 and its kin."""
+    lines = [
+        r"\mathbf M(X)\,\mathbf A + \mathbf Z(X, V)",
+        r"= \mathbf H(X)\,\boldsymbol\tau",
+        r"+ \mathbf W_{\mathrm{ext}}",
+    ]
+    if bundle.coordinates.sizes["NC"]:
+        lines.append(r"+ \mathbf H_k(X)\,\boldsymbol\lambda")
+    return tuple(lines)

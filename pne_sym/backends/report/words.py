@@ -1,0 +1,126 @@
+"""The report's standing texts: laws, notation, conventions, methods, cases of the paper."""
+
+from __future__ import annotations
+
+from pne_sym.derivation import Law
+
+LAWS: dict[Law, str] = {
+    Law.DEFINITION: "A name for an expression that is used again.",
+    Law.GEOMETRY: "Where points and axes are, from the geometry of the links.",
+    Law.LOOP_CLOSURE: "The leg reaches from its base point to its connection point.",
+    Law.RATE: "Derivative with respect to time of vectors that turn with their bodies.",
+    Law.RECIPROCITY: "A vector is resolved along the joints' velocity vectors by the vectors "
+    "reciprocal to them.",
+    Law.NEWTON: "Newton: the forces on a body sum up to its mass times the acceleration of its "
+    "centre of mass (Eq. 1).",
+    Law.EULER: "Euler: the moments on a body sum up to the rate of its angular momentum (Eq. 2).",
+    Law.FREEDOM: "Only the component of the equilibrium along the freedom of a joint is kept: "
+    "moment about the axis (R), force along it (P), both (H). Joint reactions have none "
+    "(Sec. 2.2).",
+    Law.REDUCTION: "The equilibria along all freedoms of the leg, solved for the force at the "
+    "connection point (Eq. 3).",
+    Law.RULES: "The acceleration of the platform is collected by Rules I and II (Sec. 2.3, Eq. 4).",
+    Law.ASSEMBLY: "Newton's and Euler's equations of the platform, with the forces of all legs "
+    "(Sec. 2.4, Eq. 5).",
+    Law.ENERGY: "Work of the weight.",
+    Law.LUMPING: "A value made of parameters alone, computed once when they are set.",
+}
+
+MARKS: tuple[tuple[str, str], ...] = (
+    (r"\mathbf a,\ \mathbf T,\ a", "vector, tensor (both bold), scalar"),
+    (r"\dot{\mathbf a},\ \ddot{\mathbf a}", "first and second derivative with respect to time"),
+    (r"\mathbf a\cdot\mathbf b,\ \mathbf a\times\mathbf b", "scalar and cross product"),
+    (r"\lVert\mathbf a\rVert", "length of a vector"),
+    (
+        r"\tilde{\mathbf a}",
+        r"tensor of the cross product, $`\tilde{\mathbf a}\,\mathbf b=\mathbf a\times\mathbf b`$",
+    ),
+    (
+        r"\mathbf a\,\mathbf b^{\mathsf T}",
+        (
+            r"tensor product, $`(\mathbf a\,\mathbf b^{\mathsf T})\,\mathbf c"
+            r"=\mathbf a\,(\mathbf b\cdot\mathbf c)`$"
+        ),
+    ),
+    (r"\mathbf T^{\mathsf T},\ \mathbf E", "transposed tensor, identity"),
+    (
+        r"\mathrm{ax}(\mathbf T)",
+        r"axial vector, components $`T_{32}-T_{23},\ T_{13}-T_{31},\ T_{21}-T_{12}`$",
+    ),
+    (
+        r"x^{\circ}",
+        (
+            r"remainder of $`x`$: its value at zero acceleration of the platform, "
+            r"$`\mathbf a_p=\mathbf 0`$ (and at zero acceleration of extra coordinates)"
+        ),
+    ),
+    (
+        r"\sum_i",
+        (
+            "sum over the legs; quantities of a leg carry its index $`i`$ there, and none in "
+            "the chapters on one leg"
+        ),
+    ),
+)
+
+CONVENTIONS: tuple[str, ...] = (
+    "SI units and radians; right-handed axes; the base is fixed.",
+    (
+        "Vectors and tensors are free of coordinates. Where numbers are meant (entries of X, V, A, "
+        "M, Z, H, wrenches), components are taken in base axes."
+    ),
+    "Linear parts stand before angular ones. Moments are taken about the platform origin.",
+    (
+        "Legs and joints are numbered from 1, joints from the base outwards; link j is moved by "
+        "joint j, link 0 is the base."
+    ),
+    r"Gravity is an acceleration vector $`\mathbf g`$ that points downwards.",
+    (
+        r"An actuator's $`\tau`$ is conjugate to its joint's displacement and acts on the distal "
+        "link: a force that extends a prismatic joint, a torque about the axis of a revolute or "
+        "helical one."
+    ),
+    "The force of a leg is the force that the leg exerts on the platform at the connection point.",
+    (
+        'Equation numbers are those of the comments in the generated code. "Eq." and "Sec." refer '
+        "to the paper."
+    ),
+)
+
+METHODS: dict[str, str] = {
+    "linear": "closed form. A direction fixed in link {j} keeps its scalar product with the vector "
+    "to the connection point whatever the joints beyond do (they turn about it, or slide across "
+    "it); that is one equation for this joint alone",
+    "sphere": "closed form. The joints beyond turn about one centre, so the distance from there to "
+    "the connection point is fixed; that is one equation for this joint alone",
+    "direct": "closed form. No joint is left beyond it: read off the vector to the connection "
+    "point",
+    "given": "nothing to solve: the displacement is an extra coordinate, an entry of X",
+    "numeric": "no closed form, found by iteration: {reason}",
+}
+
+KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
+PLATFORM_JOINTS = {"S": "spherical", "R": "revolute", "U": "universal", "rigid": "rigid"}
+SPACES = {
+    "point": "a point moving in the plane",
+    "planar": "a platform moving in the plane",
+    "spatial": "a platform moving freely in space",
+    "translational": "a platform that moves in space without turning",
+    "spherical": "a platform that turns about a fixed centre",
+}
+
+CASES: dict[str, str] = {
+    "3.1": "ordinary (Sec. 3.1): every leg that is driven has one actuator, and there are as many "
+    "as freedoms; H is square",
+    "3.2": "hybrid (Sec. 3.2): a leg has several actuators; it has as many columns in H",
+    "3.3": "static redundancy (Sec. 3.3): more legs than freedoms; H has a column for every driven "
+    "one, a free leg stays in M and Z",
+    "3.4": "redundant actuation (Sec. 3.4): passive joints are driven besides; H has more columns "
+    "than rows",
+    "3.5": "kinematic redundancy (Sec. 3.5): driven joints whose displacements the platform does "
+    "not determine; they are extra coordinates (Eq. 6)",
+    "3.6": "passive freedoms (Sec. 3.6): undriven joints whose displacements the platform does not "
+    "determine; they are extra coordinates (Eq. 7)",
+    "3.7": "constrained (Sec. 3.7): legs leave out directions in which the platform cannot move; "
+    "the reactions along them are the multipliers (Eqs. 35 to 37)",
+}
