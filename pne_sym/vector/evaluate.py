@@ -24,8 +24,8 @@ def evaluate(expr: Any, values: Mapping[str, Any]) -> Any:
 
     Args:
         expr: vector, tensor or scalar expression without sums over legs.
-        values: by name; arrays (3,) or (2,) for vectors, (3, 3) for tensors,
-            floats for scalars.
+        values: by name; arrays (3,) for vectors (in the plane the last component is
+            zero), (3, 3) for tensors, floats for scalars.
 
     Raises:
         KeyError: a name has no value.
@@ -58,7 +58,7 @@ _OPERATIONS: dict[type, Any] = {
     n.VectorScale: lambda s, a: s * a,
     n.TensorScale: lambda s, a: s * a,
     n.Cross: np.cross,
-    n.Perp: lambda a: np.array([-a[1], a[0]]),
+    n.Perp: lambda a: np.array([-a[1], a[0], *np.zeros(len(a) - 2)]),
     n.PlaneCross: lambda a, b: a[0] * b[1] - a[1] * b[0],
     n.Dot: lambda a, b: float(np.dot(a, b)),
     n.Apply: lambda t, a: t @ a,

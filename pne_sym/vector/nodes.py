@@ -131,10 +131,10 @@ class Cross(Vector):
     """The cross product a x b in space."""
 
     def __new__(cls, a: Vector, b: Vector) -> Vector:  # type: ignore[misc]
-        if ZeroVector in (a, b) or a == b:
-            return ZeroVector
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
+        if ZeroVector in (a, b) or a == b:
+            return ZeroVector
         return scale(factor_a * factor_b, super().__new__(cls, a, b))
 
 
@@ -243,10 +243,10 @@ class PlaneCross(_VectorScalar):
     """The cross product a x b = a_1 b_2 - a_2 b_1 of two vectors of the plane."""
 
     def __new__(cls, a: Vector, b: Vector) -> Scalar:  # type: ignore[misc]
-        if ZeroVector in (a, b) or a == b:
-            return sp.S.Zero
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
+        if ZeroVector in (a, b) or a == b:
+            return sp.S.Zero
         return factor_a * factor_b * super().__new__(cls, a, b)
 
 
@@ -326,11 +326,9 @@ def apply(a: Tensor, v: Vector) -> Vector:
     """A tensor applied to a vector."""
     if a == ZeroTensor or v == ZeroVector:
         return ZeroVector
-    if a == Identity:
-        return v
     factor_a, a = split_tensor_scale(a)
     factor_v, v = split_scale(v)
-    return scale(factor_a * factor_v, Apply(a, v))
+    return scale(factor_a * factor_v, v if a == Identity else Apply(a, v))
 
 
 def compose(a: Tensor, b: Tensor) -> Tensor:
