@@ -62,12 +62,12 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
     if space.rotates:
         spin = book.define(
             "W_p", Compose(Skew(vectors["omega"]), Skew(vectors["omega"])),
-            r"\mathbf W_p", "centripetal tensor of the platform: omega x (omega x r) = W_p r",
+            r"\mathbf W_p", "centripetal tensor of the platform",
             Law.DEFINITION, unit="1/s^2", body="base", symmetric=True,
         )
         tensor = book.define(
             "B_p", Skew(vectors["alpha"]) + spin, r"\mathbf B_p",
-            "acceleration tensor of the platform: alpha x r + omega x (omega x r) = B_p r",
+            "acceleration tensor of the platform",
             Law.DEFINITION, unit="1/s^2", body="base",
         )
     mass, centre, inertia = _inertia(book, manipulator, space)
@@ -78,8 +78,10 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
 
 
 _TEXT = (
-    "The platform's pose gives its origin and its rotation matrix; velocities and accelerations "
-    "are those of the origin, angular velocity and acceleration are seen in base axes."
+    r"The pose of the platform gives its origin and its rotation matrix; velocity and acceleration "
+    r"are those of the origin. Two tensors save work: for a vector $`\mathbf r`$ fixed in the "
+    r"platform, $`\mathbf W_p\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$ "
+    r"and $`\mathbf B_p\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf W_p\,\mathbf r`$."
 )
 
 
