@@ -249,6 +249,7 @@ class Lowering:
             frame = basis.frames[0]
             for vector in basis.vectors:
                 self.ensure(getattr(vector, "name", ""))
+            self.b.equation = self.definition[basis.duals[0].name].id
             along = [k for k in range(3) if self._vector_along(frame, "base", k) is not None]
             for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:
                 self.b.keep(self.axis_column(frame, "base", k))
