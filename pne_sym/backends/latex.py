@@ -105,7 +105,7 @@ class LatexPrinter:
             return self._scaled(*expr.args)
         if isinstance(expr, n.VectorLegSum | n.TensorLegSum | n.LegSum):
             return self._leg_sum(*expr.args)
-        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.PlaneCross):
+        if isinstance(expr, n.Vector | n.Tensor | n.Dot | n.PlaneCross | n.DualScalar):
             return self._node(expr)
         if isinstance(expr, sp.Symbol):
             return self._symbol(expr)
@@ -135,8 +135,22 @@ class LatexPrinter:
             n.Compose: self._juxtaposed,
             n.Outer: lambda a, b: Term(rf"{self.factor(a)}\,{self.transposed(b)}", level=_PRODUCT),
             n.Transpose: lambda a: Term(self.transposed(a)),
+            n.DualVector: lambda k, vectors, rows: self._reciprocal(k, "F", vectors, rows),
+            n.DualScalar: lambda k, i, vectors, rows: self._reciprocal(
+                k, f"m{int(i) + 1}", vectors, rows
+            ),
             n.Axial: lambda a: Term(rf"\mathrm{{ax}}{brackets(self.doprint(a))}"),
         }
+
+    def _reciprocal(self, k: Any, part: str, vectors: Any, rows: Any) -> Term:
+        """Row k of the inverse of the matrix whose columns are the joints' screws."""
+        lines = [" & ".join(self.doprint(v) for v in vectors)]
+        lines += [" & ".join(self.doprint(entry) for entry in row) for row in rows]
+        matrix = r" \\ ".join(lines)
+        return Term(
+            rf"\left[\begin{{bmatrix}} {matrix} \end{{bmatrix}}^{{-1}}\right]"
+            rf"_{{{int(k) + 1},\,{part}}}"
+        )
 
     def _symbol(self, expr: Any) -> Term:
         return Term(str(self.glyph(expr)))
@@ -163,7 +177,10 @@ class LatexPrinter:
         )
 
     def _juxtaposed(self, a: Any, b: Any) -> Term:
-        return Term(rf"{self.factor(a)}\,{self.factor(b)}", level=_PRODUCT)
+        terms = self.terms(a)
+        negative = len(terms) > 1 and all(term.negative for term in terms)
+        left = self.factor(-a if negative else a)
+        return Term(rf"{left}\,{self.factor(b)}", negative, _PRODUCT)
 
     def _dot(self, a: Any, b: Any) -> Term:
         if a == b:

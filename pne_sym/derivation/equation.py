@@ -174,6 +174,9 @@ class ReciprocalBasis:
         scales: sizes of the v_k, made of parameters alone, by which a singular
             basis is recognised.
         frames: names of frames in which the basis may be solved.
+        rows: further rows of scalars, one entry per vector: where the leg transmits
+            moments, the parts of the joints' axes along the moment directions.
+        moment_duals: per vector, the scalars that multiply the moment directions.
     """
 
     id: str
@@ -181,6 +184,8 @@ class ReciprocalBasis:
     duals: tuple[Any, ...]
     scales: tuple[Any, ...]
     frames: tuple[str, ...]
+    rows: tuple[tuple[Any, ...], ...] = ()
+    moment_duals: tuple[tuple[Any, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -250,6 +255,7 @@ class Coordinates:
         constraints: leg of every entry of lambda.
         turning: for every entry of q whether it is an angle.
         home: X and q at home.
+        transmits_moments: some leg transmits a moment: leg reactions have six entries.
     """
 
     space: str
@@ -264,6 +270,7 @@ class Coordinates:
     constraints: tuple[int, ...]
     turning: tuple[bool, ...]
     home: tuple[tuple[float, ...], tuple[float, ...]]
+    transmits_moments: bool = False
 
     @property
     def has_quaternion(self) -> bool:

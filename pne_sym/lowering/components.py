@@ -437,27 +437,41 @@ class Lowering:
         return [[column[i] for column in columns] for i in range(3)]
 
     def _resolve(self, basis: ReciprocalBasis, x: Any) -> list[Atom]:
-        """w_j . x for all j: the solution of sum v_j y_j = x."""
-        rows = self._basis_rows(basis)
-        right = self.vector(x, self.basis_frame(basis))
+        """w_j . x for all j: the solution of sum v_j y_j = x, with no moment part on the right."""
+        right = [*self.vector(x, self.basis_frame(basis)), *(sp.S.Zero for _ in basis.rows)]
         scales = [self.scalar(s) for s in basis.scales]
         hints = [self._named_parts.get((w.name, x), "") for w in basis.duals]
-        return solve(self.b, rows, right, lambda i, j: scales[j], hints)
+        return solve(self.b, self._basis_matrix(basis), right, lambda i, j: scales[j], hints)
 
-    def _combination(self, basis: ReciprocalBasis, weights: Sequence[Any], frame: str) -> Triple:
-        """sum g_j w_j: the solution of v_j . F = g_j."""
-        home = self.basis_frame(basis)
-        rows = self._basis_rows(basis)
-        used = [i for i in range(3) if any(e != 0 for e in rows[i])]
+    def _basis_matrix(self, basis: ReciprocalBasis) -> list[list[Atom]]:
+        """Columns (v_j; moment rows) in the basis's frame."""
+        moments = [[self.scalar(sp.sympify(e)) for e in row] for row in basis.rows]
+        return [*self._basis_rows(basis), *moments]
+
+    def _wrench(self, basis: ReciprocalBasis, weights: Sequence[Any]) -> list[Atom]:
+        """sum g_j (w_j; m_j): the solution of v_j . F + sum_i E_ij mu_i = g_j."""
+        rows = self._basis_matrix(basis)
+        used = [i for i, row in enumerate(rows) if any(e != 0 for e in row)]
         transposed = [[rows[i][j] for i in used] for j in range(len(basis.vectors))]
         right = [self.scalar(g) for g in weights]
         scales = [self.scalar(s) for s in basis.scales]
-        solution = solve(self.b, transposed, right, lambda j, i: scales[j],
-                         [f"dual_{_XYZ[i]}" for i in used])
-        components = [sp.S.Zero] * 3
+        solution = solve(self.b, transposed, right, lambda j, i: scales[j], [""] * len(used))
+        full = [sp.S.Zero] * len(rows)
         for i, value in zip(used, solution, strict=True):
-            components[i] = value
-        return self.rotate((components[0], components[1], components[2]), home, frame)
+            full[i] = value
+        return full
+
+    def _combination(self, basis: ReciprocalBasis, weights: Sequence[Any], frame: str) -> Triple:
+        """Force part of sum g_j (w_j; m_j)."""
+        x, y, z, *_ = self._wrench(basis, weights)
+        return self.rotate((x, y, z), self.basis_frame(basis), frame)
+
+    def _dual_scalar(self, expr: Any) -> Atom:
+        """Moment part i of reciprocal wrench k."""
+        k, i = int(expr.args[0]), int(expr.args[1])
+        basis = next(b for b in self.d.bases if sp.Tuple(*b.vectors) == expr.args[2])
+        weights = [sp.S.One if j == k else sp.S.Zero for j in range(len(basis.duals))]
+        return self._wrench(basis, weights)[3 + i]
 
     def _dual_vector(self, name: str, frame: str) -> Triple:
         basis, k = self._dual[name]
@@ -607,6 +621,8 @@ class Lowering:
             return self._dot(expr, hint)
         if isinstance(expr, n.PlaneCross):
             return self._plane_cross(expr, hint)
+        if isinstance(expr, n.DualScalar):
+            return self._dual_scalar(expr)
         if isinstance(expr, n.LegSum):
             value, leg_type = expr.args
             return self.b.total(self.scalar(value), leg_type.name,

@@ -280,11 +280,12 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
     assert derivation.coordinates is not None
     n = derivation.coordinates.sizes
     legs = sum(len(t.indices) for t in derivation.leg_types)
+    wide = 6 if derivation.coordinates.transmits_moments else 3
     return {
         "M": (n["NV"], n["NV"]), "Z": (n["NV"],), "H": (n["NV"], n["NU"]),
         "Hk": (n["NV"], n["NC"]), "required": (n["NV"],), "q": (n["NJ"],), "qd": (n["NJ"],),
-        "qdd": (n["NJ"],), "leg_force": (legs, 3), "drive": (n["NU"], 3),
-        "constraint_direction": (n["NC"], 3), "potential": (1,), "constraints": (n["NC"],),
+        "qdd": (n["NJ"],), "leg_force": (legs, wide), "drive": (n["NU"], wide),
+        "constraint_direction": (n["NC"], wide), "potential": (1,), "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
     }
 

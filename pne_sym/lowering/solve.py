@@ -1,7 +1,7 @@
 """Small linear systems solved by their zero pattern.
 
 Rows and columns with a single entry are eliminated first; what remains dense is
-solved by determinants up to three unknowns.
+solved by determinants.
 """
 
 from __future__ import annotations
@@ -51,6 +51,7 @@ class _System:
                  hints: Sequence[str]) -> None:
         self.b, self.m, self.r, self.scale, self.hints = b, matrix, right, scale, hints
         self.x: dict[int, Atom] = {}
+        self.minors: dict[Any, Atom] = {}
 
     def run(self, rows: list[int], columns: list[int]) -> None:
         if not rows:
@@ -85,40 +86,40 @@ class _System:
         self.x[j] = self.b.divide(self._rest(i, (j,)), pivot, self.hints[j])
 
     def _dense(self, rows: list[int], columns: list[int]) -> None:
+        """Cramer's rule on the dense rest: no divisions before the last, so no false singularities."""
         b = self.b
         right = {i: self._rest(i, columns) for i in rows}
-        if len(rows) == 2:
-            minors, determinant = self._two(rows, columns)
-        elif len(rows) == 3:
-            minors, determinant = self._three(rows, columns)
-        else:
-            raise SingularPattern("no pattern for a dense system of more than three unknowns")
+        determinant = self._minor(tuple(rows), tuple(columns))
         scale: Any = sp.S.One
         for i, j in zip(rows, columns, strict=True):
             scale = scale * self.scale(i, j)
         b.guard("singular", determinant, b.let(scale), 1)
         for j in columns:
-            total = b.add([b.mul(minors[i, j], right[i]) for i in rows])
-            self.x[j] = b.divide(total, determinant, self.hints[j])
+            terms = []
+            for i in rows:
+                minor = self._minor(tuple(k for k in rows if k != i),
+                                    tuple(k for k in columns if k != j))
+                sign = (-1) ** (rows.index(i) + columns.index(j))
+                terms.append(sign * b.mul(minor, right[i]))
+            self.x[j] = b.divide(b.add(terms), determinant, self.hints[j])
 
-    def _two(self, rows: list[int], columns: list[int]) -> tuple[dict[Any, Atom], Atom]:
-        (i, k), (j, n) = rows, columns
-        a, e, c, d = self.m[i][j], self.m[i][n], self.m[k][j], self.m[k][n]
-        determinant = self._minor(a, d, e, c)
-        return {(i, j): d, (k, j): -e, (i, n): -c, (k, n): a}, determinant
-
-    def _three(self, rows: list[int], columns: list[int]) -> tuple[dict[Any, Atom], Atom]:
-        minors: dict[Any, Atom] = {}
-        for p in range(3):
-            for q in range(3):
-                i, k = rows[(p + 1) % 3], rows[(p + 2) % 3]
-                j, n = columns[(q + 1) % 3], columns[(q + 2) % 3]
-                minors[rows[p], columns[q]] = self._minor(
-                    self.m[i][j], self.m[k][n], self.m[i][n], self.m[k][j])
-        first = rows[0]
-        determinant = self.b.add(
-            [self.b.mul(self.m[first][j], minors[first, j]) for j in columns])
-        return minors, determinant
-
-    def _minor(self, a: Atom, d: Atom, e: Atom, c: Atom) -> Atom:
-        return self.b.add((self.b.mul(a, d), -self.b.mul(e, c)))
+    def _minor(self, rows: tuple[int, ...], columns: tuple[int, ...]) -> Atom:
+        """Determinant of a part of the matrix, by its row with most zeros."""
+        b = self.b
+        if not rows:
+            return sp.S.One
+        if len(rows) == 1:
+            return self.m[rows[0]][columns[0]]
+        key = (rows, columns)
+        if key not in self.minors:
+            i = min(rows, key=lambda r: sum(self.m[r][c] != 0 for c in columns))
+            rest = tuple(r for r in rows if r != i)
+            terms = []
+            for place, j in enumerate(columns):
+                if self.m[i][j] == 0:
+                    continue
+                sign = (-1) ** (rows.index(i) + place)
+                inner = self._minor(rest, tuple(c for c in columns if c != j))
+                terms.append(sign * b.mul(self.m[i][j], inner))
+            self.minors[key] = b.add(terms)
+        return self.minors[key]

@@ -12,6 +12,7 @@ from pne_sym.derivation import Book
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import turn
+from pne_sym.model.closure import pose_at
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Leg, Manipulator
 from pne_sym.vector.evaluate import evaluate
@@ -29,15 +30,17 @@ def branch_signs(
     """
     starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
     rows = []
+    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
     for index, leg in zip(g.leg_type.indices, g.leg_type.legs, strict=True):
         q = np.array(manipulator.home.q[starts[index]:starts[index + 1]])
-        rows.append(_signs_of_leg(manipulator.name, index, leg, q, g, inverse, book))
+        rows.append(_signs_of_leg(manipulator.name, index, leg, q, g, inverse, book,
+                                   pose.R))
     return [tuple(row[k] for row in rows) for k in range(len(inverse.branches))]
 
 
 def _signs_of_leg(name: str, index: int, leg: Leg, q: Array, g: LegGeometry, inverse: InverseKinematics,
-                  book: Book) -> list[int]:
-    values = _values_at(leg, q, g, book, g.leg_type.legs.index(leg))
+                  book: Book, base_R_platform: Array) -> list[int]:
+    values = _values_at(leg, q, g, g.leg_type.indices.index(index), base_R_platform)
     for j in range(1, g.count + 1):
         values[g.name(f"q_{j}")] = q[j - 1]
         values[g.name(f"y_{j}_extra")] = q[j - 1]
@@ -64,7 +67,8 @@ def _sign(name: str, index: int, joint: int, root: float) -> int:
     return 1 if root > 0 else -1
 
 
-def _values_at(leg: Leg, q: Array, g: LegGeometry, book: Book, row: int) -> dict[str, Any]:
+def _values_at(leg: Leg, q: Array, g: LegGeometry, row: int,
+               base_R_platform: Array) -> dict[str, Any]:
     """All given vectors of a leg at displacements q, in leg axes (base point at the origin)."""
     spec = [np.eye(3)]
     origin = np.zeros(3)
@@ -87,6 +91,11 @@ def _values_at(leg: Leg, q: Array, g: LegGeometry, book: Book, row: int) -> dict
         if hasattr(vector, "name"):
             values[vector.name] = spec[j - 1] @ np.array(offsets[j - 1])
     values[g.name("S")] = tip
+    for link, platform in g.pairs:
+        end = leg.platform_joint
+        values[link.name] = spec[-1] @ np.array(end.axis_link or (0.0, 0.0, 0.0))
+        values[platform.name] = (
+            np.array(leg.base_frame).T @ base_R_platform @ np.array(end.axis_platform or (0.0,) * 3))
     values[g.name("size")] = 1.0
     _frame_vectors(values, leg, q, g, spec, row)
     return values

@@ -6,7 +6,7 @@ from typing import Any
 
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
-from pne_sym.mechanics.constraints import axis_across
+from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import build_geometry
@@ -60,6 +60,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         constraints=tuple(constraints),
         turning=tuple(joint.kind is not JointKind.PRISMATIC for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
+        transmits_moments=any(leg.motion.n for leg in legs),
     )
 
 
@@ -70,6 +71,7 @@ def _derive_leg(
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", _GEOMETRY, prefix)
     g = build_geometry(book, leg_type, suffix, space.planar)
+    g.pure_moment = force_vanishes(manipulator, g)
     bodies = introduce_bodies(book, g, space.planar)
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
     S = book.define(
@@ -82,8 +84,9 @@ def _derive_leg(
                         "from the origin of joint 1 to the connection point", Law.GEOMETRY,
                         unit="m", body=g.frame("axes", 0))
     freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-    constrained = len(freedoms) < (2 if space.planar else 3)
-    normal = axis_across(g, freedoms) if constrained and not space.planar else None
+    constrained = len(freedoms) < (2 if space.planar else 3) + len(g.pairs)
+    flat = constrained and not space.planar and not g.pairs
+    normal = axis_across(g, freedoms) if flat else None
     inverse = invert(book, g, x, normal, constrained=constrained)
     inverse.S = S
     if not inverse.is_closed:
@@ -129,6 +132,10 @@ def _joint_outputs(book: Book, manipulator: Manipulator, leg: Leg,
     book.outputs.append(Output(
         "leg_force", leg.dynamics.true_force, ((0, 0),), tuple((c, c) for c in range(3)),
         leg.name, tuple(indices)))
+    if leg.dynamics.moment != ZeroVector:
+        book.outputs.append(Output(
+            "leg_force", leg.dynamics.moment, ((0, 0),), tuple((c, c + 3) for c in range(3)),
+            leg.name, tuple(indices)))
 
 
 def _potential(book: Book, platform: PlatformMotion, writer: PlatformWriter, legs: list[Leg],
@@ -169,10 +176,17 @@ _GEOMETRY = (
 )
 _INVERSE = (
     "The joints are found one after another from the base, each from a quantity that the joints "
-    "beyond it cannot change. The signs of the roots are those of the home position."
+    r"beyond it cannot change. For a joint that turns this is one equation "
+    r"$`K^c_j\,c_j+K^s_j\,s_j=K^r_j`$ for cosine and sine of its angle from the reference "
+    r"direction $`\hat{\mathbf x}^0_j`$; $`\rho_j`$ is its amplitude, and $`\sigma_j`$, the sign of "
+    r"the root, is that of the home position. What is zero by structure is left out."
 )
 _NEWTON_EULER = (
-    "From the last link to the base; of each equilibrium only the component along the joint's "
-    "freedom is taken, so that joint reactions never appear. The inertia force of the last link "
-    "acts at the connection point like the force F on the platform, and is carried along with it."
+    r"From the last link to the base; of the equilibrium of the links beyond a joint only the "
+    r"component along the joint's freedom is taken, so that joint reactions never appear. The "
+    r"inertia force $`\mathbf f`$ of the last link (its weight taken off) acts at the connection "
+    r"point like the force $`\mathbf F`$ on the platform; $`\Gamma_j`$ is what everything else "
+    r"needs along joint j. So $`\mathbf v_j\cdot(\mathbf F+\mathbf f)=\tau_j-\Gamma_j`$ for every "
+    r"joint, and the reciprocal vectors solve this: "
+    r"$`\mathbf F=\sum_j\mathbf w_j\,(\tau_j-\Gamma_j)-\mathbf f`$."
 )

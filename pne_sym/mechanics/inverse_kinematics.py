@@ -103,6 +103,8 @@ class _Solver:
         self.x[j] = x
         if g.is_extra(j):
             x = self._given(j, x)
+        elif g.is_unseen(j):
+            self._orient(j)
         elif g.acts_as_slide(j) or (j in g.pitch and not self._later(j)):
             self._slide(j, x)
             if g.turns(j):
@@ -122,7 +124,8 @@ class _Solver:
         return x
 
     def _later(self, j: int) -> list[int]:
-        return [k for k in range(j + 1, self.g.count + 1) if not self.g.is_extra(k)]
+        return [k for k in range(j + 1, self.g.count + 1)
+                if not self.g.is_extra(k) and not self.g.is_unseen(k)]
 
     def _invariant(self, j: int) -> tuple[str, Vector, Any] | None:
         """(method, vector u fixed in link j, value of u . x) for joint j."""
@@ -262,7 +265,10 @@ class _Solver:
         along = sp.S.Zero if pattern[2] == 0 else Dot(u, e) * Dot(e, x)
         C = self._scalar(f"Kr_{j}", value - along, f"K^r_{{{j}}}",
                          f"right-hand side: K cos + N sin = C for joint {j}")
-        unit, scale = ("m^2", g.size**2) if method == "linear" else ("m^4", g.size**4)
+        unit, scale = {
+            "linear": ("m^2", g.size**2), "sphere": ("m^4", g.size**4),
+            "orientation": ("-", sp.S.One),
+        }[method]
         rho2 = self._scalar(
             f"rho2_{j}", K * K + N * N, rf"\rho_{{{j}}}^2", "squared amplitude", unit,
             conditions=(Condition(Trouble.SINGULAR, K * K + N * N, scale, 2),),
@@ -294,6 +300,8 @@ class _Solver:
     def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
         """Components of u in link j's canonical axes where the structure fixes them, else None."""
         g = self.g
+        if method == "orientation":
+            return g.end_pattern  # type: ignore[return-value]
         for k in range(1, g.count + 1):
             if u == g.e[k]:
                 return g.axis_pattern(j, k)  # type: ignore[return-value]
@@ -360,6 +368,17 @@ class _Solver:
         self._cosine_sine(j, (k * A + l * B) / amplitude, (k * B - l * A) / amplitude)
         return tip
 
+    def _orient(self, j: int) -> None:
+        """A joint that only the platform's orientation shows: from the right angle it must keep."""
+        g = self.g
+        later = [k for k in range(j + 1, g.count + 1) if g.turns(k)]
+        if len(g.pairs) != 1 or later:
+            self._numeric(j, "its turning does not move the connection point")
+            return
+        link, platform = g.pairs[0]
+        self.methods[j] = "orientation"
+        self._projection(j, platform, link, sp.S.Zero, "orientation")
+
     def _given(self, j: int, x: Vector) -> Vector:
         """The displacement is a coordinate of its own."""
         g, book = self.g, self.book
@@ -390,7 +409,8 @@ class _Solver:
     def _slide(self, j: int, x: Vector) -> None:
         g, e = self.g, self.g.e[j]
         later = self._later(j)
-        found = self._invariant(j) if later else ("direct", e, Dot(e, g.offset[g.count + 1]))
+        found = self._invariant(j) if later else (
+            "direct", e, sp.Add(*(Dot(e, g.offset[i]) for i in range(j + 1, g.count + 2))))
         if found is None:
             self._numeric(j)
             return

@@ -74,6 +74,7 @@ class LegDynamics:
         extra_rows: extra joint -> (row force, its linear form).
         reach: of the links' reference points, for the potential energy.
         form: linear form of the reduced force.
+        moment, moment_form: the moment that the leg transmits, likewise.
     """
 
     bodies: list[LinkBody]
@@ -83,6 +84,8 @@ class LegDynamics:
     Q: Any = None
     U: Any = None
     form: LinearForm | None = None
+    moment: Any = ZeroVector
+    moment_form: LinearForm = field(default_factory=lambda: LinearForm({}, ZeroVector))
     extra_rows: dict[int, tuple[Any, LinearForm]] = field(default_factory=dict)
 
 
@@ -206,7 +209,7 @@ class DynamicsWriter:
                 Law.LUMPING, unit="kg m^2", body=frame, parameter=True, symmetric=True)
         second = self.book.define(
             g.name(f"Sigma_{group}"), self._half_trace(J) * Identity - J,
-            rf"\boldsymbol\Sigma_{{{group}}}", f"second moment of mass that belongs to {J.name}",
+            rf"\boldsymbol\Sigma_{{{group}}}", f"second moment of mass of the links that turn with link {group}",
             Law.LUMPING, unit="kg m^2", body=frame, parameter=True, symmetric=True)
         omega, alpha = motion.omega[group], motion.alpha[group]
         moments = [Cross(b.first_moment, relative[b.joint]) for b in members]
@@ -275,7 +278,7 @@ class DynamicsWriter:
         return self.book.define(
             self.g.name(f"trace_{J.name}"), sp.Add(*(Dot(a, J @ a) for a in axes)) / 2,
             self.book.notation[J.name].latex.replace(r"\mathbf J", "j"),
-            f"half the trace of {J.name}", Law.LUMPING, unit="kg m^2", parameter=True)
+            "half the trace of that inertia tensor", Law.LUMPING, unit="kg m^2", parameter=True)
 
     def run(self) -> LegDynamics:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""
@@ -379,11 +382,18 @@ class DynamicsWriter:
                 "inertia and weight along all freedoms", Law.RECIPROCITY, unit="N",
                 coefficient_latex=r"\mathbf C", body=frame, reference="Sec. 2.3")
         self.G = G
+        self.G_m: Any = vector_sum(gamma[j] * o for j, o in motion.o.items() if gamma[j] != 0)
+        if self.G_m != ZeroVector:
+            self.G_m = self.write.define(
+                "G_m", self.G_m, r"\mathbf G_m", "moment at the connection point that balances "
+                "the leg's inertia and weight along all freedoms", Law.RECIPROCITY, unit="N m",
+                coefficient_latex=r"\mathbf C_m", body=frame, reference="Sec. 2.2, joint table")
+        lost: Any = ZeroVector
         if motion.normals and a_tip is not None:
             # The reaction along a direction left out is lambda itself, the last link's share
             # included (contract of lambda): nothing of it may stay in Q and U, and the last
             # link's mass cannot move to the platform.
-            phi = self._without_normals(result.tip_mass * a_tip + phi)
+            phi, lost = self._without_normals(result.tip_mass * a_tip + phi)
             result.tip_mass, a_tip = sp.S.Zero, None
         c = self.write.define(
             "c", -(G + phi), r"\mathbf c",
@@ -398,6 +408,7 @@ class DynamicsWriter:
                 g.name("Q"), -form.coefficients[motion.a_p], r"\mathbf Q",
                 "inertia of the leg at the connection point, without the mass gathered there",
                 Law.RULES, unit="kg", body=frame, symmetric=True, reference="Eq. 4")
+        self._moments(result, lost)
         result.U = ZeroVector if form.remainder == ZeroVector else book.define(
             g.name("U"), -form.remainder, r"\mathbf U",
             "velocity and gravity terms of the leg force", Law.RULES, unit="N", body=frame,
@@ -408,24 +419,50 @@ class DynamicsWriter:
             "leg force on the platform without actuation, the last link's mass included",
             Law.NEWTON, unit="N", body=frame, reference="Eq. 3")
 
-    def _without_normals(self, force: Any) -> Any:
-        """The last link's inertia force without its part along the directions left out."""
+    def _moments(self, result: LegDynamics, lost: Any) -> None:
+        """The moment that the leg transmits, with its linear form."""
+        total = self.G_m + lost
+        if total == ZeroVector:
+            return
+        c = self.write.define(
+            "c_m", -total, r"\mathbf c_m",
+            "moment of the leg on the platform without actuation", Law.REDUCTION, unit="N m",
+            coefficient_latex=r"-\mathbf Q'_m", body=self.k.tip_frame(), reference="Eq. 3")
+        result.moment, result.moment_form = c, self.motion.known.get(c, LinearForm({}, c))
+
+    def _without_normals(self, force: Any) -> tuple[Any, Any]:
+        """The last link's inertia force without its part along the directions left out.
+
+        Also the moment that this part brings with it, where the leg transmits moments.
+        """
         body = self.k.tip_frame()
         total = self.write.define(
             "f_tip", force, r"\mathbf f_u", "inertia force of the last link less its weight",
             Law.NEWTON, unit="N", coefficient_latex=r"\boldsymbol\Phi_u", body=body,
             reference="Eq. 1")
-        along = vector_sum(Dot(n, total) * n for n in self.motion.normals)
-        return self.write.define(
+        shares = []
+        for k, (n, moment) in enumerate(self.motion.normals, 1):
+            share = Dot(n, total)
+            if moment != ZeroVector:
+                share = share / (1 + self.book.define(
+                    self.g.name(f"mu2_{k}"), Dot(moment, moment), rf"\mu_{{{k}}}^2",
+                    "squared moment that goes with the unit force", Law.REDUCTION))
+            shares.append((share, n, moment))
+        along = vector_sum(share * n for share, n, _ in shares)
+        lost = vector_sum(-share * moment for share, _, moment in shares)
+        free = self.write.define(
             "f_free", total - along, r"\mathbf f'_u",
             "inertia force of the last link across the directions that the leg leaves out",
             Law.REDUCTION, unit="N", coefficient_latex=r"\boldsymbol\Phi'_u", body=body,
             reference="Eq. 35")
+        return free, lost
 
     def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any], phi: Any) -> None:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""
         g, motion = self.g, self.motion
         row = gamma[j] - Dot(motion.v[j], self.G)
+        if g.turns(j) and self.G_m != ZeroVector:
+            row = row - Dot(g.e[j], self.G_m)
         symbol = self.write.define(
             f"P_{j}", row, rf"P_{{{j}}}",
             f"inertia and weight of the leg along the extra freedom of joint {j}", Law.FREEDOM,

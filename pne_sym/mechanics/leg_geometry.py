@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
-from pne_sym.model.manipulator import JointKind
+from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, norm
 
 Array = NDArray[np.float64]
@@ -41,12 +41,18 @@ class LegGeometry:
             zero displacement, by joint number.
         base_point, platform_point: b and q.
         pitch: pitch symbols of helical joints, by joint number.
+        pairs: where the leg transmits moments, directions (fixed in the last link,
+            fixed in the platform) that the platform joint keeps perpendicular.
+        end_pattern: canonical components of the platform joint's axis in the last link:
+            0, 1, -1 by structure, else None.
         size: characteristic length of the leg (scalar parameter).
         axes_at: axis directions (legs, joints, 3) in leg axes with all joints at
             zero, and with extra joints at arbitrary displacements.
         canonical: canonical axes as columns in spec axes (legs, 3, 3), by group.
         zero_angle: (legs, 2) numeric (cos, sin) of zero_turn, by joint.
         bent_helices: helical joints that turn the connection point about their axes.
+        unseen: revolute joints whose axes pass through the connection point.
+        pure_moment: the wrench that the leg leaves out is a pure moment at home.
         exact_frames: groups whose canonical axes are coordinate directions.
     """
 
@@ -61,11 +67,15 @@ class LegGeometry:
     base_point: Any = None
     platform_point: Any = None
     size: Any = None
+    pairs: list[tuple[VectorSymbol, VectorSymbol]] = field(default_factory=list)
+    end_pattern: tuple[Any, ...] = ()
     axes_at: list[Array] = field(default_factory=list)
     canonical: dict[int, Array] = field(default_factory=dict)
     exact_frames: set[int] = field(default_factory=set)
     zero_angle: dict[int, Array] = field(default_factory=dict)
     bent_helices: set[int] = field(default_factory=set)
+    unseen: set[int] = field(default_factory=set)
+    pure_moment: bool = False
 
     @property
     def count(self) -> int:
@@ -83,6 +93,10 @@ class LegGeometry:
     def turns(self, j: int) -> bool:
         """Whether joint j turns (opens a group)."""
         return self.kind(j) is not JointKind.PRISMATIC
+
+    def is_unseen(self, j: int) -> bool:
+        """Whether turning joint j leaves the connection point where it is."""
+        return j in self.unseen
 
     def acts_as_slide(self, j: int) -> bool:
         """Whether joint j moves the connection point along its axis only.
@@ -138,6 +152,7 @@ def build_geometry(book: Book, leg_type: LegType, suffix: str, planar: bool) -> 
     builder.axes()
     builder.offsets()
     builder.frames()
+    builder.platform_joint()
     builder.size()
     return geometry
 
@@ -257,7 +272,7 @@ class _Builder:
             self._turn_frame(j, previous)
         for j in range(1, self.g.count + 1):
             self._give_axis(j)
-        self._note_helices()
+        self._note_straight_ends()
 
     def _candidates(self, group: int) -> list[tuple[Any, Array]]:
         """Directions fixed in the group worth an axis: (spec components, numeric per leg)."""
@@ -407,17 +422,22 @@ class _Builder:
                              Law.GEOMETRY, parameter=True),
         )
 
-    def _note_helices(self) -> None:
-        """Helical joints whose turning moves the connection point."""
+    def _note_straight_ends(self) -> None:
+        """Helical and revolute joints whose turning does or does not move the connection point."""
         g = self.g
-        for j in g.pitch:
+        for j in reversed(range(1, g.count + 1)):
+            if not g.turns(j):
+                continue
             straight = all(
                 g.offset[i] == ZeroVector or (g.group[i - 1] == j and g.offset_is_zero(j, i)[:2]
                                               == (True, True))
                 for i in range(j + 1, g.count + 2))
-            slides = all(not g.turns(i) and g.parallel(j, i) for i in range(j + 1, g.count + 1))
-            if not (straight and slides):
+            slides = all((not g.turns(i) and g.parallel(j, i)) or i in g.unseen
+                         for i in range(j + 1, g.count + 1))
+            if j in g.pitch and not (straight and slides):
                 g.bent_helices.add(j)
+            if j not in g.pitch and straight and slides and not g.is_extra(j):
+                g.unseen.add(j)
 
     def _give_axis(self, j: int) -> None:
         """The axis vector e_j, in the frame where it is simplest."""
@@ -432,6 +452,44 @@ class _Builder:
             frame, components = self.g.frame("axes", group), pattern
         self.g.e[j] = self.give(f"e_{j}", frame, components, rf"\mathbf e_{{{j}}}", meaning, "-")
 
+    def platform_joint(self) -> None:
+        """Pairs of directions that the platform joint keeps perpendicular (7.4)."""
+        end = self.type.model.platform_joint
+        if self.planar or end.kind is PlatformJointKind.SPHERICAL:
+            return
+        if end.kind is PlatformJointKind.RIGID:
+            rows = self.field("platform_joint_rotation", (3, 3), "-",
+                              "platform axes in the last link's frame", "platform_joint.rotation",
+                              lambda leg: leg.platform_joint.rotation)
+            for k in range(3):
+                i = (k + 1) % 3
+                self._pair(k, tuple(sp.Integer(int(v)) for v in _E[k]), rows[3 * i: 3 * i + 3])
+            return
+        link = self._end_axis("axis_link", end.axis_link)
+        platform = self._end_axis("axis_platform", end.axis_platform)
+        if end.kind is PlatformJointKind.UNIVERSAL:
+            self._pair(0, link, platform)
+            return
+        for k, across in enumerate(_two_across(link)):
+            self._pair(k, across, platform)
+
+    def _end_axis(self, name: str, axis: Any) -> Any:
+        if is_coordinate(axis):
+            return tuple(sp.Integer(int(a)) for a in axis)
+        return self.field(f"platform_joint_{name}", (3,), "-", f"{name} of the platform joint",
+                          f"platform_joint.{name}", lambda leg: getattr(leg.platform_joint, name))
+
+    def _pair(self, k: int, link: Any, platform: Any) -> None:
+        last = self.g.frame("spec", self.g.group[self.g.count])
+        u = self.give(f"end_l{k + 1}", last, link, rf"\mathbf a_{{l{k + 1}}}",
+                      "direction of the platform joint, fixed in the last link", "-")
+        w = self.give(f"end_p{k + 1}", "platform", platform, rf"\mathbf a_{{p{k + 1}}}",
+                      "direction of the platform joint, fixed in the platform", "-")
+        self.g.pairs.append((u, w))
+        values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or _E[k])
+        self.g.end_pattern = _pattern(np.einsum(
+            "lji,lj->li", self.c[self.g.group[self.g.count]], values))
+
     def size(self) -> None:
         """Characteristic length by which singular legs are recognised."""
         vectors = [self.g.base_point, self.g.platform_point,
@@ -441,6 +499,16 @@ class _Builder:
             "size of the leg, the measure of what is near singular", Law.LUMPING, unit="m",
             parameter=True,
         )
+
+
+def _two_across(axis: Any) -> list[Any]:
+    """Two directions across an axis given by components; unit where the axis is exact."""
+    x, y, z = axis
+    if all(c.is_Integer for c in axis):
+        main = next(k for k in range(3) if axis[k] != 0)
+        return [tuple(sp.Integer(int(v)) for v in _E[(main + k) % 3]) for k in (1, 2)]
+    # general axis: cross products with the axes; any two independent directions across it serve
+    return [(sp.S.Zero, -z, y), (z, sp.S.Zero, -x)]
 
 
 def _rodrigues(axis: Array, angle: float) -> Array:

@@ -15,6 +15,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.mechanics.constraints import directions_left_out, wrenches_left_out
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.platform_motion import PlatformMotion
@@ -23,6 +24,8 @@ from pne_sym.vector import (
     Compose,
     Cross,
     Dot,
+    DualScalar,
+    DualVector,
     LinearForm,
     Skew,
     TensorSymbol,
@@ -45,7 +48,11 @@ class LegMotion:
         S_ddot: acceleration of the connection point.
         v: velocity vectors v_j of the joints at the connection point.
         w: reciprocal vectors w_j (without extra joints).
-        normals: unit vectors that the leg's freedoms leave out.
+        o: moment parts of the reciprocal wrenches, where the leg transmits moments.
+        m: the same as amounts along the moment directions.
+        n: moment directions.
+        nu: biases of the angular acceleration along the moment directions.
+        normals: wrenches (force, moment) that do no work along the leg's freedoms.
         qd, qdd: joint rates and accelerations.
         omega, alpha: angular velocity and acceleration, by group.
         spin: centripetal tensor omega~ omega~, by group.
@@ -64,7 +71,11 @@ class LegMotion:
     S_ddot: Any = None
     v: dict[int, Vector] = field(default_factory=dict)
     w: dict[int, VectorSymbol] = field(default_factory=dict)
-    normals: list[Vector] = field(default_factory=list)
+    o: dict[int, Vector] = field(default_factory=dict)
+    m: dict[int, list[Any]] = field(default_factory=dict)
+    n: list[Any] = field(default_factory=list)
+    nu: list[Any] = field(default_factory=list)
+    normals: list[tuple[Vector, Vector]] = field(default_factory=list)
     qd: dict[int, Any] = field(default_factory=dict)
     qdd: dict[int, Any] = field(default_factory=dict)
     omega: dict[int, Vector] = field(default_factory=dict)
@@ -78,6 +89,12 @@ class LegMotion:
     ydd: dict[int, Any] = field(default_factory=dict)
     gap: Any = None
     relative: Any = None
+
+
+def _mark(unknown: Any) -> str:
+    """How a coefficient names its unknown: y_3 for an extra coordinate, else alpha."""
+    stem = unknown.name.split("_")
+    return f"y_{stem[1]}" if stem[0] == "ydd" else r"\boldsymbol\alpha"
 
 
 class LinearWriter:
@@ -105,7 +122,7 @@ class LinearWriter:
                 coefficients[unknown] = value
                 continue
             first = unknown == motion.a_p
-            label = coefficient_latex if first else f"{latex}^{{(y_{unknown.name.split('_')[1]})}}"
+            label = coefficient_latex if first else f"{latex}^{{({_mark(unknown)})}}"
             short = "d" if first else f"d{k}"
             coefficients[unknown] = book.define(
                 f"{short}_{name}", value, label,
@@ -125,13 +142,20 @@ class LinearWriter:
 
 
 _RATES = (
-    "Each joint moves the connection point along v_j. The reciprocal vectors w_j, with "
-    "w_j . v_k = 1 for j = k and 0 otherwise, resolve its velocity into joint rates."
+    r"Each joint j moves the connection point along its velocity vector $`\mathbf v_j`$: "
+    r"$`\dot{\mathbf S}=\sum_j\mathbf v_j\,\dot q_j`$. The reciprocal vectors $`\mathbf w_j`$, "
+    r"with $`\mathbf w_j\cdot\mathbf v_k=1`$ for $`j=k`$ and 0 otherwise, solve this for the joint "
+    r"rates. The centripetal tensor saves work: "
+    r"$`\mathbf W\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$."
 )
 _ACCELERATIONS = (
-    "The bias is the acceleration that the connection point would have with all joint "
-    "accelerations zero. What depends on the acceleration of the platform is collected by "
-    "Rules I and II; a circle marks the remainder, the same formula at zero acceleration a_p."
+    r"The bias $`\mathfrak b`$ is the acceleration that the connection point would have with all "
+    r"joint accelerations zero; what is left, $`\ddot{\mathbf S}-\mathfrak b"
+    r"=\sum_j\mathbf v_j\,\ddot q_j`$, is resolved like the velocity. Whatever depends on the "
+    r"acceleration of the platform is then written as coefficient times $`\mathbf a_p`$ plus "
+    r"remainder, by Rules I and II; a circle marks the remainder, the same formula at "
+    r"$`\mathbf a_p=\mathbf 0`$. The acceleration tensor saves work: "
+    r"$`\mathbf B\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf W\,\mathbf r`$."
 )
 
 
@@ -232,33 +256,75 @@ class MotionWriter:
         return self.book.define(
             g.name(f"v_{j}"), vector, rf"\mathbf v_{{{j}}}",
             f"velocity of the connection point per rate of joint {j}", Law.RATE, unit="m",
-            body=self.tip_frame(), reference="Sec. 7.1 of the method: joint columns")
+            body=self.tip_frame(), reference="Sec. 2.2, joint table")
 
     def tip_frame(self) -> str:
         """Canonical frame of the last link."""
         return self.g.frame("axes", self.g.group[self.g.count])
 
     def _basis(self) -> None:
-        """Reciprocal vectors; directions that the freedoms leave out complete the basis."""
+        """Reciprocal wrenches; directions that the freedoms leave out complete the basis."""
         g, motion = self.g, self.motion
         joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
         vectors: list[Any] = [motion.v[j] for j in joints]
         scales: list[Any] = [g.size if g.turns(j) else sp.S.One for j in joints]
-        missing = (2 if self.space.planar else 3) - len(joints)
-        for k, normal in enumerate(self._left_out(joints, missing), 1):
-            motion.normals.append(normal)
+        self._moment_directions()
+        rows = [[Dot(g.e[j], n) if g.turns(j) else sp.S.Zero for j in joints] for n in motion.n]
+        missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
+        for normal, moments in self._left_out(joints, missing):
+            motion.normals.append((normal, vector_sum(
+                m * n for m, n in zip(moments, motion.n, strict=True))))
             vectors.append(normal)
             scales.append(sp.S.One)
-            del k
+            for row, moment in zip(rows, moments, strict=True):
+                row.append(moment)
         names = [*(f"w_{j}" for j in joints), *(f"wn_{k + 1}" for k in range(missing))]
         latexes = [*(rf"\mathbf w_{{{j}}}" for j in joints),
                    *(rf"\mathbf w_{{c{k + 1}}}" for k in range(missing))]
-        duals = self._define_duals(vectors, names, latexes)
+        duals, moment_duals = (
+            self._define_wrenches(vectors, rows, names, latexes) if rows
+            else (self._define_duals(vectors, names, latexes), []))
         motion.w = dict(zip(joints, duals, strict=False))
+        for j, amounts in zip(joints, moment_duals, strict=False):
+            motion.m[j] = amounts
+            motion.o[j] = self.book.define(
+                g.name(f"o_{j}"),
+                vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True)),
+                rf"\mathbf o_{{{j}}}", f"moment part of reciprocal wrench {j}", Law.RECIPROCITY,
+                body=self.tip_frame(), reference="Sec. 2.2, joint table")
         frames = tuple(dict.fromkeys(
             g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
         self.book.bases.append(ReciprocalBasis(
-            g.leg_type.name, tuple(vectors), tuple(duals), tuple(scales), frames))
+            g.leg_type.name, tuple(vectors), tuple(duals), tuple(scales), frames,
+            tuple(tuple(row) for row in rows), tuple(tuple(m) for m in moment_duals)))
+
+    def _moment_directions(self) -> None:
+        """Directions of the moments that the platform joint transmits."""
+        for k, (link, platform) in enumerate(self.g.pairs, 1):
+            self.motion.n.append(self.book.define(
+                self.g.name(f"n_m{k}"), Cross(link, platform), rf"\mathbf n_{{m{k}}}",
+                f"direction {k} of the moment that the platform joint transmits", Law.GEOMETRY,
+                body=self.tip_frame(), reference="Sec. 2.2, joint table"))
+
+    def _define_wrenches(self, vectors: list[Any], rows: list[list[Any]], names: list[str],
+                         latexes: list[str]) -> tuple[list[Any], list[list[Any]]]:
+        """Reciprocal wrenches where the leg transmits moments."""
+        book, g = self.book, self.g
+        screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
+        duals, moments = [], []
+        for k in range(len(vectors)):
+            duals.append(book.define(
+                g.name(names[k]), DualVector(sp.Integer(k), *screws), latexes[k],
+                f"force part of reciprocal wrench {k + 1}", Law.RECIPROCITY,
+                body=self.tip_frame(), reference="Sec. 2.2, joint table"))
+            moments.append([
+                book.define(
+                    g.name(f"m{i + 1}_{names[k]}"),
+                    DualScalar(sp.Integer(k), sp.Integer(i), *screws),
+                    f"m_{{{k + 1}{i + 1}}}", f"moment part {i + 1} of reciprocal wrench {k + 1}",
+                    Law.RECIPROCITY, reference="Sec. 2.2, joint table")
+                for i in range(len(rows))])
+        return duals, moments
 
     def _define_duals(self, vectors: list[Any], names: list[str], latexes: list[str]) -> list[Any]:
         book, g = self.book, self.g
@@ -273,29 +339,33 @@ class MotionWriter:
             across = Cross(*others[k])
             duals.append(book.define(
                 g.name(names[k]), across / Dot(vector, across), latexes[k],
-                f"reciprocal vector {k + 1}: w . v = 1 for its own joint, 0 for the others",
-                Law.RECIPROCITY, body=self.tip_frame(), reference="Sec. 7.3 of the method"))
+                f"reciprocal vector {k + 1}",
+                Law.RECIPROCITY, body=self.tip_frame(), reference="Sec. 2.3"))
         return duals
 
-    def _left_out(self, joints: list[int], missing: int) -> list[Vector]:
-        """Unit vectors perpendicular to all velocity vectors of the leg."""
+    def _left_out(self, joints: list[int], missing: int) -> list[tuple[Vector, list[Any]]]:
+        """Wrenches (force, moment amounts) that do no work along the leg's freedoms."""
         if missing == 0:
             return []
-        from pne_sym.mechanics.constraints import directions_left_out
-
-        return directions_left_out(self.book, self.g, self.motion, joints, missing,
-                                   self.space.planar)
+        if self.motion.n:
+            return wrenches_left_out(self.book, self.g, self.motion, joints, missing)
+        normals = directions_left_out(self.book, self.g, self.motion, joints, missing,
+                                      self.space.planar)
+        return [(normal, []) for normal in normals]
 
     def _rates(self) -> None:
         g, book, motion = self.g, self.book, self.motion
         extras = [j for j in range(1, g.count + 1) if g.is_extra(j)]
         target: Vector = self.S_dot
+        turning: Vector = self.p.omega
         for j in extras:
             name = g.name(f"yd_{j}")
             book.note_quantity(Quantity(name, rf"\dot y_{{{j}}}", f"rate of extra joint {j}",
                                         "rad/s" if g.turns(j) else "m/s"))
             motion.qd[j] = sp.Symbol(name, real=True)
             target = target - motion.qd[j] * motion.v[j]
+            if g.turns(j):
+                turning = turning - motion.qd[j] * g.e[j]
         if extras:
             target = book.define(
                 g.name("S_dot_rest"), target, r"\dot{\mathbf S}'",
@@ -303,7 +373,8 @@ class MotionWriter:
                 Law.RATE, unit="m/s")
         for j, dual in motion.w.items():
             motion.qd[j] = book.define(
-                g.name(f"qd_{j}"), Dot(dual, target), rf"\dot q_{{{j}}}", f"rate of joint {j}",
+                g.name(f"qd_{j}"),
+                Dot(dual, target) + Dot(motion.o.get(j, ZeroVector), turning), rf"\dot q_{{{j}}}", f"rate of joint {j}",
                 Law.RECIPROCITY, unit="rad/s" if g.turns(j) else "m/s")
         self._angular_velocities()
 
@@ -369,11 +440,13 @@ class MotionWriter:
             return ()
         return (self.p.t_ddot + self.p.tensor @ self.g.platform_point,)
 
+    beta: dict[int, Vector]
+
     def _bias(self) -> Vector:
         """Acceleration of the connection point at zero joint accelerations."""
         g, book, motion = self.g, self.book, self.motion
         self.coriolis: dict[int, Vector] = {0: ZeroVector}
-        beta: dict[int, Vector] = {0: ZeroVector}
+        beta = self.beta = {0: ZeroVector}
         terms: list[Vector] = []
         forms: list[Vector] = []
         for j in self.spans:
@@ -403,7 +476,7 @@ class MotionWriter:
             g.name("bias"), total, r"\mathfrak b",
             "acceleration of the connection point at zero joint accelerations", Law.RATE,
             unit="m/s^2", body=self.tip_frame(), forms=(vector_sum(forms),),
-            reference="Sec. 7.2 of the method")
+            reference="Sec. 2.2")
 
     def _named_sum(self, stem: str, value: Vector, latex: str, title: str, frame: str) -> Vector:
         if value == ZeroVector or isinstance(value, VectorSymbol):
@@ -414,6 +487,9 @@ class MotionWriter:
     def _joint_accelerations(self, writer: LinearWriter, bias: Vector) -> None:
         g, book, motion = self.g, self.book, self.motion
         target: Vector = motion.S_ddot - bias
+        turning: Vector = self.p.alpha
+        if motion.n and self.p.alpha != ZeroVector:
+            motion.unknowns.append(self.p.alpha)
         for j in [j for j in range(1, g.count + 1) if g.is_extra(j)]:
             name = g.name(f"ydd_{j}")
             book.note_quantity(Quantity(name, rf"\ddot y_{{{j}}}",
@@ -422,17 +498,41 @@ class MotionWriter:
             motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
             motion.unknowns.append(motion.ydd[j])
             target = target - motion.ydd[j] * motion.v[j]
+            if g.turns(j):
+                turning = turning - motion.ydd[j] * g.e[j]
         if target != motion.S_ddot:
             target = writer.define(
                 "rel", target, r"\ddot{\mathbf S}'",
                 "acceleration of the connection point left to the joint accelerations",
                 Law.RATE, unit="m/s^2", coefficient_latex=r"\mathbf E", body=self.tip_frame())
         motion.relative = target
+        nu = self._orientation_bias()
         for j, dual in motion.w.items():
             motion.qdd[j] = writer.define(
-                f"qdd_{j}", Dot(dual, target), rf"\ddot q_{{{j}}}", f"acceleration of joint {j}",
+                f"qdd_{j}",
+                Dot(dual, target) + Dot(motion.o.get(j, ZeroVector), turning)
+                + sp.Add(*(m * v for m, v in zip(motion.m.get(j, ()), nu, strict=False))),
+                rf"\ddot q_{{{j}}}", f"acceleration of joint {j}",
                 Law.RECIPROCITY, unit="rad/s^2" if g.turns(j) else "m/s^2",
                 coefficient_latex=rf"\mathbf w_{{{j}}}", reference="Eqs. 8, 9, 16")
+
+    def _orientation_bias(self) -> list[Any]:
+        """Per moment direction, what its turning adds to the angular acceleration along it."""
+        g, book, motion, p = self.g, self.book, self.motion, self.p
+        last = g.group[g.count]
+        omega = motion.omega[last]
+        found = []
+        for k, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), 1):
+            turning = Cross(Cross(omega, link), platform) + Cross(link, Cross(p.omega, platform))
+            rate = turning if turning == ZeroVector else book.define(
+                g.name(f"nd_m{k}"), turning, rf"\dot{{\mathbf n}}_{{m{k}}}",
+                f"rate of moment direction {k}", Law.RATE, unit="1/s", body=self.tip_frame())
+            found.append(book.define(
+                g.name(f"nu_{k}"), Dot(rate, p.omega - omega) - Dot(n, self.beta[last]),
+                rf"\nu_{{{k}}}", f"bias of the angular acceleration along moment direction {k}",
+                Law.RATE, unit="rad/s^2", reference="Sec. 2.2, joint table"))
+        motion.nu = found
+        return found
 
     def _angular_accelerations(self, writer: LinearWriter) -> None:
         g, book, motion = self.g, self.book, self.motion
@@ -455,7 +555,7 @@ class MotionWriter:
                 tensors.append(book.define(
                     g.name(f"B_{j}") + mark, Skew(alpha) + motion.spin[j],
                     rf"\mathbf B{circle}_{{{j}}}",
-                    f"acceleration tensor of link {j}: alpha x r + omega x (omega x r) = B r",
+                    f"acceleration tensor of link {j}",
                     Law.DEFINITION, unit="1/s^2", body=frame))
             motion.acceleration_tensor[j] = (tensors[0], tensors[1])
 

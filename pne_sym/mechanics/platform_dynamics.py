@@ -141,8 +141,9 @@ class PlatformWriter:
             self._vector_output("required", force, 0)
         if self.n_euler is not None:
             moment = book.define(
-                "R_a", self.total(lambda leg: -Cross(leg.g.platform_point, leg.dynamics.force),
-                                  self.n_euler),
+                "R_a", self.total(
+                    lambda leg: -Cross(leg.g.platform_point, leg.dynamics.force)
+                    - leg.dynamics.moment, self.n_euler),
                 r"\mathbf R_\alpha", "moment that actuators and external wrench must give",
                 Law.ASSEMBLY, unit="N m", body="base", reference="Eq. 33")
             self._vector_output("required", moment, 3)
@@ -173,8 +174,8 @@ class PlatformWriter:
         if space.translates:
             form = linear_form(Cross(p.alpha, self.moment), [p.alpha])
             coupling = self.total(
-                lambda leg: -Compose(leg.dynamics.Q, Skew(leg.g.platform_point))
-                if leg.dynamics.Q != ZeroTensor else ZeroTensor, form.coefficients[p.alpha])
+                lambda leg: -(leg.dynamics.Q @ Skew(leg.g.platform_point))
+                - self._of_alpha(leg.dynamics.form), form.coefficients[p.alpha])
             ta = book.define(
                 "M_ta", coupling, r"\mathbf M_{t\alpha}", "coupling block of M", Law.RULES,
                 unit="kg m", body="base", linear=form, expanded=Cross(p.alpha, self.moment),
@@ -182,16 +183,23 @@ class PlatformWriter:
             self._tensor_output("M", ta, 0, 3, mirrored=True)
 
         def rotary(leg: Leg) -> Any:
-            if leg.dynamics.Q == ZeroTensor:
-                return ZeroTensor
             arm = Skew(leg.g.platform_point)
-            return -Compose(arm, Compose(leg.dynamics.Q, arm))
+            return (-(arm @ (leg.dynamics.Q @ arm)) - arm @ self._of_alpha(leg.dynamics.form)
+                    + self._of_a_p(leg) @ arm - self._of_alpha(leg.dynamics.moment_form))
 
         aa = book.define(
             "M_aa", self.total(rotary, self.inertia), r"\mathbf M_{\alpha\alpha}",
             "rotational block of M", Law.ASSEMBLY, unit="kg m^2", body="base", symmetric=True,
             reference="Eq. 34")
         self._tensor_output("M", aa, 3, 3, symmetric=True)
+
+    def _of_alpha(self, form: Any) -> Any:
+        """Coefficient of the platform's angular acceleration (legs that transmit moments)."""
+        return form.coefficients.get(self.p.alpha, ZeroTensor) if form else ZeroTensor
+
+    def _of_a_p(self, leg: Leg) -> Any:
+        """Coefficient of a_p in the moment that the leg transmits."""
+        return leg.dynamics.moment_form.coefficients.get(leg.motion.a_p, ZeroTensor)
 
     def _bias_blocks(self) -> None:
         book, p, space = self.book, self.p, self.space
@@ -213,7 +221,9 @@ class PlatformWriter:
                 "gyroscopic moment and moment of the weight of the platform", Law.EULER,
                 unit="N m", body="platform", reference="Eq. 34")
             za = book.define(
-                "Z_a", self.total(lambda leg: Cross(leg.g.platform_point, leg.dynamics.U), base),
+                "Z_a", self.total(
+                    lambda leg: Cross(leg.g.platform_point, leg.dynamics.U)
+                    - leg.dynamics.moment_form.remainder, base),
                 r"\mathbf Z_\alpha", "rotational part of Z", Law.ASSEMBLY, unit="N m",
                 body="base", reference="Eq. 34")
             self._vector_output("Z", za, 3)
@@ -225,12 +235,14 @@ class PlatformWriter:
             form = leg.dynamics.extra_rows[j][1]
             q, motion, g = leg.g.platform_point, leg.motion, leg.g
             coefficient = form.coefficients.get(motion.a_p, ZeroVector)
+            turning = form.coefficients.get(self.p.alpha, ZeroVector)
             self._leg_scalar("Z", leg, form.remainder, rows)
-            if coefficient != ZeroVector:
-                self._leg_vector("M", leg, coefficient, 0, leg_rows=rows)
+            if coefficient != ZeroVector or turning != ZeroVector:
+                if self.space.translates:
+                    self._leg_vector("M", leg, coefficient, 0, leg_rows=rows)
                 if self.space.rotates:
                     arm = book.define(
-                        g.name(f"M_ya_{j}"), Cross(q, coefficient), rf"\mathbf M_{{y\alpha,{j}}}",
+                        g.name(f"M_ya_{j}"), Cross(q, coefficient) + turning, rf"\mathbf M_{{y\alpha,{j}}}",
                         f"coupling of extra joint {j} with the rotation of the platform",
                         Law.ASSEMBLY, body="base", reference="Eqs. 6, 7")
                     self._leg_vector("M", leg, arm, 3, leg_rows=rows)
@@ -273,27 +285,38 @@ class PlatformWriter:
         motion, book, g = leg.motion, self.book, leg.g
         if j in motion.w:
             w: Any = motion.w[j]
-            self._force_column("H", leg, w, f"H_a_{j}", rf"\mathbf H_{{\alpha,{j}}}", places)
-            book.outputs.append(Output(
-                "drive", w, ((0, 0),), tuple((c, c) for c in range(3)), leg.name, places))
+            o = motion.o.get(j, ZeroVector)
+            self._force_column("H", leg, (w, o), f"H_a_{j}", rf"\mathbf H_{{\alpha,{j}}}", places)
+            self._wrench_rows("drive", leg, (w, o), places)
         for k, other, rows in self._extras():
             if k is not leg:
                 continue
             value = sp.S.One if other == j else (
                 -Dot(motion.w[j], motion.v[other]) if j in motion.w else sp.S.Zero)
+            if other != j and j in motion.o and g.turns(other):
+                value = value - Dot(motion.o[j], g.e[other])
             if value != 0:
                 book.outputs.append(Output(
                     "H", value, ((0, 0),), ((0, 0),), leg.name, rows, places))
-        del g
 
-    def _force_column(self, array: str, leg: Leg, w: Any, stem: str, latex: str,
+    def _wrench_rows(self, array: str, leg: Leg, wrench: tuple[Any, Any],
+                     places: tuple[int, ...]) -> None:
+        """Force, and moment where some leg transmits one, along rows of an array."""
+        for first, part in zip((0, 3), wrench, strict=True):
+            if part != ZeroVector:
+                self.book.outputs.append(Output(
+                    array, part, ((0, 0),), tuple((c, first + c) for c in range(3)), leg.name,
+                    places))
+
+    def _force_column(self, array: str, leg: Leg, wrench: tuple[Any, Any], stem: str, latex: str,
                       places: tuple[int, ...]) -> None:
+        w, o = wrench
         if self.space.translates:
             self._leg_vector(array, leg, w, 0, leg_columns=places)
         if self.space.rotates:
             moment = self.book.define(
-                leg.g.name(stem), Cross(leg.g.platform_point, w), latex,
-                f"moment of the unit force of column {stem} about the platform origin",
+                leg.g.name(stem), Cross(leg.g.platform_point, w) + o, latex,
+                "moment of the column's unit force about the platform origin",
                 Law.ASSEMBLY, unit="m", body="base", reference="Eq. 34")
             self._leg_vector(array, leg, moment, 3, leg_columns=places)
 
@@ -303,30 +326,34 @@ class PlatformWriter:
                        for k in range(len(leg.motion.normals)))
         column = {key: c for c, key in enumerate(order)}
         for leg in self.legs:
-            for k, normal in enumerate(leg.motion.normals):
+            for k, wrench in enumerate(leg.motion.normals):
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
-                self._force_column("Hk", leg, normal, f"Hk_a_{k + 1}",
+                self._force_column("Hk", leg, wrench, f"Hk_a_{k + 1}",
                                    rf"\mathbf H_{{k\alpha,{k + 1}}}", places)
-                self._constraint(leg, k, normal, places)
+                self._constraint(leg, k, wrench, places)
 
-    def _constraint(self, leg: Leg, k: int, normal: Any, places: tuple[int, ...]) -> None:
+    def _constraint(self, leg: Leg, k: int, wrench: tuple[Any, Any], places: tuple[int, ...]) -> None:
         """The constraint, and its second derivative (Eq. 37)."""
         book, g, motion = self.book, leg.g, leg.motion
+        normal, moment = wrench
+        miss, turning = Dot(normal, motion.gap), sp.S.Zero
+        if moment != ZeroVector:  # the joints close the position; what is missed is a right angle
+            amount = sp.Symbol(g.name("mu_c"), real=True)
+            (pair,), (nu,) = g.pairs, motion.nu
+            miss, turning = -amount * Dot(*pair), amount * nu
         gap = book.define(
-            g.name(f"phi_c{k + 1}"), Dot(normal, motion.gap), rf"\phi_{{{k + 1}}}",
+            g.name(f"phi_c{k + 1}"), miss, rf"\phi_{{{k + 1}}}",
             "distance by which the leg misses the connection point, along a direction left out",
             Law.LOOP_CLOSURE, unit="m", reference="Eq. 37")
         self._leg_scalar("constraints", leg, gap, places)
         rest = motion.known[motion.relative].remainder if motion.relative in motion.known else (
             motion.relative)
         bias = book.define(
-            g.name(f"gamma_c{k + 1}"), Dot(normal, rest), rf"\gamma_{{{k + 1}}}",
+            g.name(f"gamma_c{k + 1}"), Dot(normal, rest) + turning, rf"\gamma_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
             Law.LOOP_CLOSURE, unit="m/s^2", reference="Eq. 37")
         self._leg_scalar("constraint_bias", leg, bias, places)
-        book.outputs.append(Output(
-            "constraint_direction", normal, ((0, 0),), tuple((c, c) for c in range(3)), leg.name,
-            places))
+        self._wrench_rows("constraint_direction", leg, wrench, places)
 
     # ---- placing ---------------------------------------------------------------------
 
@@ -359,9 +386,9 @@ class PlatformWriter:
 
 
 _BLOCKS = (
-    "With each leg's force in the form h tau - Q a_p - U, the coefficients of the platform's "
-    "acceleration are the blocks of M, the rest is Z, and the reciprocal vectors of the driven "
-    "joints are the columns of H."
+    "With each leg's force in closed form (Eq. 4), the coefficients of the platform's acceleration "
+    "are the blocks of M, the rest is Z, and the reciprocal vectors of the driven joints are the "
+    "columns of H."
 )
 
 __all__ = ["Axial", "Leg", "PlatformWriter", "TensorSymbol", "Transpose", "tensor_sum"]

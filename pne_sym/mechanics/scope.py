@@ -11,6 +11,10 @@ from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Leg, Manipulator, PlatformJointKind
 
 Array = NDArray[np.float64]
+_MOMENTS = {  # moments that a platform joint transmits, in space
+    PlatformJointKind.SPHERICAL: 0, PlatformJointKind.UNIVERSAL: 1,
+    PlatformJointKind.REVOLUTE: 2, PlatformJointKind.RIGID: 3,
+}
 _DEPENDENT = 1e-9  # smallest relative singular value of independent freedoms
 
 
@@ -18,27 +22,21 @@ def check_scope(manipulator: Manipulator, leg_type: LegType, space: TaskSpace) -
     """Refuse a leg type that the method does not cover, with the mechanical reason.
 
     Raises:
-        SpecError: a platform joint that transmits moments; more freedoms than the
-            connection point has and no joint marked extra; freedoms that are
-            dependent at home.
+        SpecError: more freedoms than the platform joint leaves to be determined and no
+            joint marked extra; freedoms that are dependent at home.
     """
     index, leg = leg_type.indices[0], leg_type.model
-    kind = leg.platform_joint.kind
-    allowed = {PlatformJointKind.SPHERICAL} | (
-        {PlatformJointKind.REVOLUTE} if space.planar else set())
-    if kind not in allowed:
-        raise SpecError(
-            manipulator.name, f"legs[{index}].platform_joint.kind",
-            f"value '{kind.value}': a leg that transmits a moment to the platform is outside this "
-            "version", f"{' or '.join(repr(k.value) for k in sorted(allowed))}")
     freedoms = [j for j, joint in enumerate(leg.joints) if not joint.extra]
-    most = 2 if space.planar else 3
+    kind = leg.platform_joint.kind
+    moments = 0 if space.planar else _MOMENTS[kind]
+    most = (2 if space.planar else 3) + moments
     if len(freedoms) > most:
         raise SpecError(
             manipulator.name, f"legs[{index}].joints",
-            f"{len(freedoms)} freedoms move a connection point that has {most}",
+            f"{len(freedoms)} freedoms where the platform joint leaves {most} to be determined",
             f"at most {most} joints, or the surplus ones marked extra = true")
-    _check_independent(manipulator, leg_type, freedoms, planar=space.planar)
+    if not moments:
+        _check_independent(manipulator, leg_type, freedoms, planar=space.planar)
 
 
 def _check_independent(manipulator: Manipulator, leg_type: LegType, freedoms: list[int], *,
@@ -85,6 +83,17 @@ def _velocity_vectors(leg: Leg, q: Array) -> Array:
             column = column + joint.pitch * e
         columns.append(column)
     return np.stack(columns, axis=1)
+
+
+def axes_at(leg: Leg, q: Array) -> tuple[list[Array], Array]:
+    """Joint axes and the last link's rotation at displacements q, in leg axes."""
+    rotation, axes = np.eye(3), []
+    for joint, x in zip(leg.joints, q, strict=True):
+        axis = np.array(joint.axis)
+        axes.append(rotation @ axis)
+        if joint.kind is not JointKind.PRISMATIC:
+            rotation = rotation @ turn(axis, x)
+    return axes, rotation
 
 
 def turn(axis: Array, angle: float) -> Array:

@@ -41,11 +41,23 @@ def evaluate(expr: Any, values: Mapping[str, Any]) -> Any:
         return np.eye(3)
     if isinstance(expr, sp.Number):
         return float(expr)
+    if isinstance(expr, n.DualVector | n.DualScalar):
+        return _reciprocal(expr, values)
     args = [evaluate(arg, values) for arg in expr.args]
     operation = _OPERATIONS.get(type(expr))
     if operation is None:
         raise TypeError(f"no numeric meaning for {type(expr).__name__}")
     return operation(*args)
+
+
+def _reciprocal(expr: Any, values: Mapping[str, Any]) -> Any:
+    """Force part, or one entry of the moment part, of a reciprocal wrench."""
+    *indices, vectors, rows = expr.args
+    screws = np.array([evaluate(v, values) for v in vectors]).T
+    for row in rows:
+        screws = np.vstack((screws, [evaluate(entry, values) for entry in row]))
+    wrench = np.linalg.inv(screws)[int(indices[0])]
+    return wrench[:3] if len(indices) == 1 else float(wrench[3 + int(indices[1])])
 
 
 def _axial(t: Any) -> Any:

@@ -161,6 +161,14 @@ class Axial(Vector):
     """
 
 
+class DualVector(Vector):
+    """Force part of reciprocal wrench k of a set of screws (v_j; E_1j, E_2j, ...).
+
+    Arguments: k, the vectors v_j, and rows of scalars E_ij.  With the scalars m_ki of
+    `DualScalar`: w_k . v_j + sum_i m_ki E_ij = 1 for k = j and 0 otherwise.
+    """
+
+
 class VectorLegSum(Vector):
     """Sum of a vector over the legs of a type (build with `sum_over_legs`)."""
 
@@ -248,6 +256,10 @@ class PlaneCross(_VectorScalar):
         if ZeroVector in (a, b) or a == b:
             return sp.S.Zero
         return factor_a * factor_b * super().__new__(cls, a, b)
+
+
+class DualScalar(_VectorScalar):
+    """Moment part m_ki of reciprocal wrench k; arguments as of `DualVector`, with i after k."""
 
 
 class LegSum(_VectorScalar):
