@@ -13,9 +13,11 @@ import typer
 import typer.core
 
 from pne_sym import comparison, writer
+from pne_sym.cli import review
 from pne_sym.cli.arguments import GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
+from pne_sym.cli.options import Debug
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
@@ -45,7 +47,6 @@ Jobs = Annotated[
 Quiet = Annotated[
     bool, typer.Option("--quiet", "-q", help="Tell only errors, warnings and differences.")
 ]
-Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an internal error.")]
 
 DEFAULT_OUT = Path("generated")
 ALL_CORES = os.cpu_count() or 1
@@ -74,6 +75,7 @@ Examples:
   pne-gen all --out generated/ --jobs 4    the whole catalogue
   pne-gen check stewart --out generated/   is what stands there up to date?
   pne-gen list                             what the catalogue has
+  pne-gen explain stewart ups-K5           an equation: law, uses, users, code
 
 \b
 Exit codes:
@@ -174,6 +176,9 @@ def check(
         wanted = _wanted(sources or [], out)
         if not _check(wanted, _find(wanted), out, jobs=jobs, report=Report(quiet=quiet)):
             raise typer.Exit(DIFFERENT)
+
+
+app.command("explain")(review.explain)
 
 
 def _catalogue() -> tuple[str, ...]:

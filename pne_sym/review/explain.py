@@ -1,0 +1,163 @@
+"""An equation of a derivation explained: what it says, why, from what, for what, in which code.
+
+>>> from pne_sym.pipeline import compile_bundle
+>>> from pne_sym.generation import find
+>>> from pne_sym.review.explain import explain
+>>> told = explain(compile_bundle(find("planar_3rpr")), "S")
+>>> told.equation.id, told.formula
+('rpr-K1', 'S = t + q - b')
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.report.names import printer_for
+from pne_sym.derivation import Derivation, Equation, Quantity, names_in
+from pne_sym.review.plain import plain
+
+
+class UnknownEquationError(ValueError):
+    """No equation has the id or defines the name; the message has the nearest ones."""
+
+
+@dataclass(frozen=True)
+class Related:
+    """A quantity that an equation uses, or one that uses it.
+
+    Attributes:
+        id: of the equation that defines it; "given" or "parameter" otherwise.
+        name: of the quantity.
+        meaning: in words.
+    """
+
+    id: str
+    name: str
+    meaning: str
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """All that is known of an equation.
+
+    Attributes:
+        equation: the equation.
+        quantity: what it defines.
+        chapter: title of its chapter.
+        formula: plain text.
+        forms: other expressions of the same value, plain text.
+        latex: as in the report.
+        uses: what stands on its right-hand side, in order of derivation.
+        used_by: equations on whose right-hand side it stands, and outputs.
+    """
+
+    equation: Equation
+    quantity: Quantity
+    chapter: str
+    formula: str
+    forms: tuple[str, ...]
+    latex: str
+    uses: tuple[Related, ...]
+    used_by: tuple[Related, ...]
+
+
+def find_equation(derivation: Derivation, wanted: str) -> Equation:
+    """The equation of an id (ups-K5) or of the name that it defines.
+
+    Raises:
+        UnknownEquationError: there is none; the message has the nearest ids and names.
+    """
+    equations = tuple(derivation.equations())
+    for equation in equations:
+        if wanted in (equation.id, equation.name):
+            return equation
+    same = [e for e in equations if wanted.lower() in (e.id.lower(), e.name.lower())]
+    if len(same) == 1:
+        return same[0]
+    known = [name for e in equations for name in (e.id, e.name)]
+    if wanted in derivation.notation or wanted in derivation.parameters.entries:
+        users = [e.id for e in equations if wanted in names_in(e.rhs)]
+        raise UnknownEquationError(
+            f"{wanted!r} is given, no equation defines it; used by "
+            f"{', '.join(users[:12]) or 'the outputs'}"
+        )
+    close = difflib.get_close_matches(wanted[:60], known, n=4, cutoff=0.4)
+    hint = f"; nearest: {', '.join(close)}" if close else ""
+    raise UnknownEquationError(f"no equation {wanted[:60]!r}{hint}; without it all are listed")
+
+
+def explain(bundle: Bundle, wanted: str, *, transitively: bool = False) -> Explanation:
+    """Explain an equation.
+
+    Args:
+        bundle: the compiled manipulator.
+        wanted: an equation's id or the name that it defines.
+        transitively: also what its uses use, and what uses its users.
+
+    Raises:
+        UnknownEquationError: there is none; the message has the nearest ids and names.
+    """
+    derivation = bundle.derivation
+    equation = find_equation(derivation, wanted)
+    printer = printer_for(derivation)
+    chapter = next(c for c in derivation.chapters if equation in c.equations)
+    used = printer if chapter.leg_type else printer.with_index()
+    uses = {e.name: names_in(e.rhs) for e in derivation.equations()}
+    return Explanation(
+        equation,
+        derivation.notation[equation.name],
+        chapter.title,
+        f"{equation.name} = {plain(equation.rhs)}",
+        tuple(plain(form) for form in equation.forms),
+        f"{used.doprint(equation.lhs)} = {used.doprint(equation.rhs)}",
+        tuple(_related(derivation, _reach(uses, equation.name, transitively))),
+        (
+            *_related(derivation, _reach(_inverted(uses), equation.name, transitively)),
+            *_outputs(derivation, equation.name),
+        ),
+    )
+
+
+def _reach(graph: dict[str, set[str]], start: str, transitively: bool) -> set[str]:
+    found: set[str] = set()
+    stack = list(graph.get(start, ()))
+    while stack:
+        name = stack.pop()
+        if name not in found:
+            found.add(name)
+            stack += graph.get(name, ()) if transitively else ()
+    return found
+
+
+def _inverted(graph: dict[str, set[str]]) -> dict[str, set[str]]:
+    users: dict[str, set[str]] = {}
+    for name, used in graph.items():
+        for each in used:
+            users.setdefault(each, set()).add(name)
+    return users
+
+
+def _related(derivation: Derivation, names: set[str]) -> Iterable[Related]:
+    """The quantities of these names: given ones first, then in order of derivation."""
+    equations = {e.name: e for e in derivation.equations()}
+    for name in sorted(names - equations.keys()):
+        quantity = derivation.notation.get(name)
+        if name in derivation.parameters.entries:
+            field = derivation.parameters.entries[name][0]
+            yield Related("parameter", name, quantity.meaning if quantity else field.meaning)
+        elif quantity is not None:
+            yield Related("given", name, quantity.meaning)
+        else:
+            branch = name in derivation.parameters.branches
+            yield Related("given", name, "sign of the assembly branch" if branch else "an input")
+    for name, equation in equations.items():
+        if name in names:
+            yield Related(equation.id, name, equation.title)
+
+
+def _outputs(derivation: Derivation, name: str) -> Iterable[Related]:
+    arrays = dict.fromkeys(o.array for o in derivation.outputs if name in names_in(o.value))
+    return [Related("output", array, "array of the generated code") for array in arrays]

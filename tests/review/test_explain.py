@@ -1,0 +1,82 @@
+"""An equation explained: what it says, what it uses, what uses it, its statements."""
+
+from __future__ import annotations
+
+import pytest
+
+from pne_sym.derivation import names_in
+from pne_sym.review.code import passages
+from pne_sym.review.explain import UnknownEquationError, explain, find_equation
+from tests.models import bundle, catalogue, source
+
+STEWART = catalogue("stewart")
+
+
+def test_by_id_and_by_name_are_the_same() -> None:
+    by_id, by_name = (explain(bundle(STEWART), wanted) for wanted in ("ups-K1", "S"))
+    assert by_id == by_name
+    assert by_id.formula == "S = t + q - b"
+    assert by_id.equation.law.value == "geometry"
+    assert "Sec. 2.5" in by_id.equation.reference
+
+
+def test_case_is_forgiven_where_it_is_unique() -> None:
+    assert find_equation(bundle(STEWART).derivation, "UPS-k5").id == "ups-K5"
+
+
+def test_uses_and_users_are_each_others_inverse() -> None:
+    compiled = bundle(STEWART)
+    for equation in compiled.derivation.equations():
+        told = explain(compiled, equation.id)
+        assert {r.name for r in told.uses} == names_in(equation.rhs)
+        for related in told.used_by:
+            if related.id != "output":
+                assert equation.name in names_in(compiled.derivation.definition(related.name).rhs)
+
+
+def test_transitively_down_to_what_is_given_and_up_to_the_outputs() -> None:
+    told = explain(bundle(STEWART), "bias", transitively=True)
+    assert {"ups_platform_point", "q", "t", "S", "omega_2"} & {r.name for r in told.uses} >= {
+        "q",
+        "S",
+    }
+    assert {"Z_t", "Z_a", "mu_2_o"} <= {r.name for r in told.used_by}
+    assert "Z" in {r.name for r in explain(bundle(STEWART), "Z_t").used_by if r.id == "output"}
+
+
+@pytest.mark.parametrize(
+    ("wanted", "parts"),
+    [
+        ("omga_2", ["omega_2"]),
+        ("ups-K55", ["ups-K5"]),
+        ("e_3", ["given", "used by ups-K19"]),
+        ("", ["no equation"]),
+        ("x" * 10000, ["no equation"]),
+    ],
+)
+def test_an_unknown_equation_is_refused_with_the_nearest(wanted: str, parts: list[str]) -> None:
+    with pytest.raises(UnknownEquationError) as caught:
+        explain(bundle(STEWART), wanted)
+    assert len(str(caught.value)) < 300
+    for part in parts:
+        assert part in str(caught.value)
+
+
+def test_statements_in_the_numpy_code_stand_there_under_the_equation() -> None:
+    wanted = find_equation(bundle(STEWART).derivation, "S").id
+    found = passages(source(STEWART), wanted)
+    assert {"_M_ups", "_inverse_kinematics_ups"} <= {f for p in found for f in p.functions}
+    for passage in found:
+        assert {line.split(" = ")[0] for line in passage.lines} >= {"S_x", "S_y", "S_z"}
+
+
+def test_statements_of_c_code() -> None:
+    text = (
+        "static int model_M_ups(const double *X)\n{\n    /* (K1) the gap */\n"
+        "    const double a = X[0];\n    const double b = a*a;\n    /* (K2) next */\n"
+        "    const double c = b;\n    return 0;\n}\n"
+    )
+    found = passages(text, "K1")
+    assert [(p.functions, p.lines) for p in found] == [
+        (("model_M_ups",), ("const double a = X[0];", "const double b = a*a;"))
+    ]
