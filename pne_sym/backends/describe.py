@@ -52,6 +52,7 @@ class Described:
         free_rows: rows of extra coordinates that no drive acts on.
         has_rotation, has_quaternion, is_constrained, is_redundant, has_extras: features.
         legs: number of legs.
+        is_numeric: some displacements are found by iteration; functions take q0.
     """
 
     name: str
@@ -67,6 +68,8 @@ class Described:
     driven_rows: tuple[int, ...]
     free_rows: tuple[int, ...]
     legs: int
+
+    is_numeric: bool
 
     @property
     def has_rotation(self) -> bool:
@@ -114,7 +117,8 @@ def describe(bundle: Bundle) -> Described:
         ", ".join((*c.pose, *extra)), ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
         ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators), ", ".join(c.wrench),
         tuple(counts), driven, tuple(k for k in range(len(c.rates), c.sizes["NV"])
-                                     if k not in driven), len(bundle.manipulator.legs))
+                                     if k not in driven), len(bundle.manipulator.legs),
+        not all(t.is_closed for t in bundle.derivation.leg_types))
 
 
 def _driven_rows(bundle: Bundle) -> tuple[int, ...]:

@@ -8,36 +8,23 @@ stand between the terms of a sum.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.backends.glyphs import Glyph
+from pne_sym.backends.terms import (
+    ATOM,
+    CROSS,
+    PRODUCT,
+    SUM,
+    Term,
+    brackets,
+    join_terms,
+    norm_bars,
+    unbracketed,
+)
 from pne_sym.vector import nodes as n
-
-_SUM, _CROSS, _PRODUCT, _ATOM = range(4)
-
-
-@dataclass(frozen=True)
-class Term:
-    """A term of a sum.
-
-    Attributes:
-        text: LaTeX without the sign.
-        negative: whether it is subtracted.
-        level: how tightly the text binds.
-    """
-
-    text: str
-    negative: bool = False
-    level: int = _ATOM
-
-    def signed(self, *, first: bool) -> str:
-        """The term with the sign that it needs at its place."""
-        if first:
-            return f"-{self.text}" if self.negative else self.text
-        return f"{'-' if self.negative else '+'} {self.text}"
 
 
 class LatexPrinter:
@@ -115,7 +102,7 @@ class LatexPrinter:
         if isinstance(expr, n.VectorSymbol | n.TensorSymbol):
             return self._symbol(expr)
         if isinstance(expr, n.VectorAdd | n.TensorAdd):
-            return Term(self.doprint(expr), level=_SUM)
+            return Term(self.doprint(expr), level=SUM)
         printer = self._printers().get(type(expr))
         if printer is None:
             raise TypeError(f"no LaTeX for {type(expr).__name__}")
@@ -133,24 +120,16 @@ class LatexPrinter:
             n.Skew: self._skew,
             n.Apply: self._juxtaposed,
             n.Compose: self._juxtaposed,
-            n.Outer: lambda a, b: Term(rf"{self.factor(a)}\,{self.transposed(b)}", level=_PRODUCT),
+            n.Outer: lambda a, b: Term(rf"{self.factor(a)}\,{self.transposed(b)}", level=PRODUCT),
             n.Transpose: lambda a: Term(self.transposed(a)),
-            n.DualVector: lambda k, vectors, rows: self._reciprocal(k, "F", vectors, rows),
-            n.DualScalar: lambda k, i, vectors, rows: self._reciprocal(
-                k, f"m{int(i) + 1}", vectors, rows
-            ),
+            n.DualVector: lambda k, *_: self._reciprocal(k, r"\mathrm F"),
+            n.DualScalar: lambda k, i, *_: self._reciprocal(k, rf"\mathrm M_{int(i) + 1}"),
             n.Axial: lambda a: Term(rf"\mathrm{{ax}}{brackets(self.doprint(a))}"),
         }
 
-    def _reciprocal(self, k: Any, part: str, vectors: Any, rows: Any) -> Term:
-        """Row k of the inverse of the matrix whose columns are the joints' screws."""
-        lines = [" & ".join(self.doprint(v) for v in vectors)]
-        lines += [" & ".join(self.doprint(entry) for entry in row) for row in rows]
-        matrix = r" \\ ".join(lines)
-        return Term(
-            rf"\left[\begin{{bmatrix}} {matrix} \end{{bmatrix}}^{{-1}}\right]"
-            rf"_{{{int(k) + 1},\,{part}}}"
-        )
+    def _reciprocal(self, k: Any, part: str) -> Term:
+        """Row k of the inverse of the matrix of the joints' velocities."""
+        return Term(rf"\left[\mathcal V^{{-1}}\right]_{{{int(k) + 1},\,{part}}}")
 
     def _symbol(self, expr: Any) -> Term:
         return Term(str(self.glyph(expr)))
@@ -158,14 +137,14 @@ class LatexPrinter:
     def factor(self, expr: Any) -> str:
         """An expression as a factor of a product, in brackets where needed."""
         terms = self.terms(expr)
-        if len(terms) == 1 and not terms[0].negative and terms[0].level >= _PRODUCT:
+        if len(terms) == 1 and not terms[0].negative and terms[0].level >= PRODUCT:
             return terms[0].text
         return brackets(join_terms(terms))
 
     def _operand(self, expr: Any, *, left: bool) -> str:
         """An operand of a cross or scalar product."""
         terms = self.terms(expr)
-        least = _ATOM if left else _PRODUCT
+        least = ATOM if left else PRODUCT
         if len(terms) == 1 and not terms[0].negative and terms[0].level >= least:
             return terms[0].text
         return brackets(join_terms(terms))
@@ -173,14 +152,14 @@ class LatexPrinter:
     def _between(self, a: Any, sign: str, b: Any) -> Term:
         left, right = self._operand(a, left=True), self._operand(b, left=False)
         return Term(
-            f"{left}{sign} {right}" if right[0].isalpha() else f"{left}{sign}{right}", level=_CROSS
+            f"{left}{sign} {right}" if right[0].isalpha() else f"{left}{sign}{right}", level=CROSS
         )
 
     def _juxtaposed(self, a: Any, b: Any) -> Term:
         terms = self.terms(a)
         negative = len(terms) > 1 and all(term.negative for term in terms)
         left = self.factor(-a if negative else a)
-        return Term(rf"{left}\,{self.factor(b)}", negative, _PRODUCT)
+        return Term(rf"{left}\,{self.factor(b)}", negative, PRODUCT)
 
     def _dot(self, a: Any, b: Any) -> Term:
         if a == b:
@@ -212,7 +191,7 @@ class LatexPrinter:
         if len(terms) > 1:
             body = brackets(body)
         index = self.legs.get(str(leg_type), "i")
-        return Term(rf"\sum_{{{index}}} {body}", negative, _CROSS)
+        return Term(rf"\sum_{{{index}}} {body}", negative, CROSS)
 
     # ---- products with scalar factors -----------------------------------------------------
 
@@ -234,9 +213,9 @@ class LatexPrinter:
             return self._product(over, numerator, negative)
         sole = self._term(of)
         text = (
-            sole.text if sole.level >= _CROSS and not sole.negative else brackets(self.doprint(of))
+            sole.text if sole.level >= CROSS and not sole.negative else brackets(self.doprint(of))
         )
-        level = sole.level if sole.level < _PRODUCT and text == sole.text else _PRODUCT
+        level = sole.level if sole.level < PRODUCT and text == sole.text else PRODUCT
         return Term(r"\,".join([*over, text]), negative, level if over else sole.level)
 
     def _product(self, over: Sequence[str], items: Sequence[Any], negative: bool) -> Term:
@@ -248,24 +227,24 @@ class LatexPrinter:
                 sole = (
                     self._node(base)
                     if not isinstance(base, sp.Add)
-                    else Term(self.doprint(base), level=_SUM)
+                    else Term(self.doprint(base), level=SUM)
                 )
                 return Term(sole.text, negative, sole.level)
-        return Term(r"\,".join(over), negative, _ATOM if len(over) == 1 else _PRODUCT)
+        return Term(r"\,".join(over), negative, ATOM if len(over) == 1 else PRODUCT)
 
     def _fraction(self, over: list[str], under: list[str], of: Any, negative: bool) -> Term:
         below = r"\,".join(under)
         if len(under) == 1:
-            below = _unbracketed(below)
+            below = unbracketed(below)
         if of is not None and not over:
             return Term(rf"\frac{{{self.doprint(of)}}}{{{below}}}", negative)
         above = r"\,".join(over) if over else "1"
         if len(over) == 1:
-            above = _unbracketed(above)
+            above = unbracketed(above)
         text = rf"\frac{{{above}}}{{{below}}}"
         if of is None:
             return Term(text, negative)
-        return Term(rf"{text}\,{self.factor(of)}", negative, _PRODUCT)
+        return Term(rf"{text}\,{self.factor(of)}", negative, PRODUCT)
 
     def _scalar_factor(self, base: Any, exponent: Any) -> str:
         """base^exponent, exponent positive."""
@@ -281,7 +260,7 @@ class LatexPrinter:
             text = f"{_FUNCTIONS[base.func]}{brackets(arguments)}"
         else:
             terms = self.terms(base)
-            alone = len(terms) == 1 and terms[0].level >= _PRODUCT and not terms[0].negative
+            alone = len(terms) == 1 and terms[0].level >= PRODUCT and not terms[0].negative
             text = terms[0].text if alone else brackets(join_terms(terms))
         return text if exponent == 1 else f"{brackets(text)}^{{{exponent}}}"
 
@@ -307,30 +286,3 @@ def _split(factor: Any) -> tuple[Any, list[tuple[Any, Any]], list[tuple[Any, Any
         (below if exponent < 0 else above).append((base, abs(exponent)))
     above.sort(key=lambda item: isinstance(item[0], n.Dot | n.PlaneCross | sp.Add))
     return number, above, below
-
-
-def join_terms(terms: Sequence[Term]) -> str:
-    """Terms on one line."""
-    return " ".join(term.signed(first=k == 0) for k, term in enumerate(terms))
-
-
-def brackets(text: str) -> str:
-    """In round brackets, as high as what they hold."""
-    return rf"\left({text}\right)" if r"\frac" in text or r"\sum" in text else f"({text})"
-
-
-def norm_bars(text: str) -> str:
-    r"""Length of a vector; \lVert is safe in tables, where "|" is not."""
-    return rf"\lVert {text}\rVert"
-
-
-def _unbracketed(text: str) -> str:
-    """Without round brackets around the whole."""
-    if text.startswith("(") and text.endswith(")"):
-        depth = 0
-        for k, mark in enumerate(text):
-            depth += (mark == "(") - (mark == ")")
-            if depth == 0 and k < len(text) - 1:
-                return text
-        return text[1:-1]
-    return text

@@ -27,6 +27,14 @@ PLAN_NAMES = {"legs": "LEGS_FORCE"}
 
 
 @dataclass(frozen=True)
+class ClosureView:
+    """Legs of a type whose displacements are found by iteration."""
+
+    plan: str
+    joints: list[list[int]]
+
+
+@dataclass(frozen=True)
 class ModuleView:
     """Ready strings for the module's template."""
 
@@ -37,6 +45,9 @@ class ModuleView:
     driven_joints: tuple[int, ...]
     turning_drives: tuple[int, ...]
     actuator_legs: tuple[int, ...]
+    closures: tuple[ClosureView, ...]
+    extra_joints: tuple[int, ...]
+    turning_joints: tuple[bool, ...]
     branches: tuple[str, ...]
     prepare: str
     functions: tuple[str, ...]
@@ -66,8 +77,19 @@ class NumpyBackend:
             describe(bundle), fields, tuple(line for f in fields for line in _default_lines(f)),
             bundle.derivation.leg_types, driven,
             tuple(k for k, j in enumerate(driven) if c.turning[j]),
-            tuple(leg for leg, _ in c.actuators), writer.branches(), writer.prepare(),
+            tuple(leg for leg, _ in c.actuators), _closures(bundle),
+            tuple(c.joints.index(e) for e in c.extras), c.turning, writer.branches(), writer.prepare(),
             tuple(writer.function(f) for f in bundle.program.functions.values()), plans)
+
+
+def _closures(bundle: Bundle) -> tuple[ClosureView, ...]:
+    """What the iteration on the loop closure needs, per leg type."""
+    c = bundle.coordinates
+    return tuple(
+        ClosureView(f"_CLOSURE_{t.name.upper()}",
+                    [[c.joints.index((leg, j)) for j in range(t.joints) if t.methods[j] != "given"]
+                     for leg in t.indices])
+        for t in bundle.derivation.leg_types if not t.is_closed)
 
 
 def _default_lines(f: FieldView) -> list[str]:
@@ -268,7 +290,7 @@ class _Parts:
 
     def _entries(self, vector: str) -> list[int]:
         used = {s.name for a in self.f.unpack for s in a.expr.free_symbols}
-        sizes = {"X": "NQ", "V": "NV", "A": "NV"}
+        sizes = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
         count = self.w.bundle.coordinates.sizes[sizes[vector]]
         return [k for k in range(count) if f"{vector}_{k}" in used]
 

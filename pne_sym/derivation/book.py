@@ -109,6 +109,18 @@ class Book:
         )
         return symbol
 
+    def mark(self) -> tuple[int, int, set[str]]:
+        """A point in the open chapter to return to."""
+        return len(self._chapters[-1][4]), len(self.givens), set(self.notation)
+
+    def reset(self, mark: tuple[int, int, set[str]]) -> None:
+        """Strike out what the open chapter has gained since the mark."""
+        equations, givens, names = mark
+        del self._chapters[-1][4][equations:]
+        del self.givens[givens:]
+        for name in set(self.notation) - names:
+            del self.notation[name]
+
     def open_equations(self) -> tuple[Equation, ...]:
         """The equations of the chapter that is being written."""
         return tuple(self._chapters[-1][4])

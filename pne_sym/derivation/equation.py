@@ -228,6 +228,7 @@ class LegTypeInfo:
         joints: number of chain joints.
         methods: per joint how inverse kinematics finds it.
         reasons: joint -> why there is no closed form.
+        transmitted: number of moments that the platform joint transmits.
     """
 
     name: str
@@ -236,6 +237,17 @@ class LegTypeInfo:
     joints: int
     methods: tuple[str, ...]
     reasons: tuple[tuple[int, str], ...] = ()
+    transmitted: int = 0
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether every displacement has a closed form."""
+        return "numeric" not in self.methods
+
+    @property
+    def unknowns(self) -> int:
+        """Joints whose displacement is to be found (all but the extra ones)."""
+        return sum(m != "given" for m in self.methods)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ class Statement:
     equation: str
     total_of: str | None = None
     is_named: bool = False
+    hint: str = ""
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,9 @@ class Builder:
         self.of: dict[sp.Symbol, Statement] = {}
         self._stage: dict[sp.Symbol, Stage] = {}
         self._names: set[str] = set()
+        self._issued: dict[str, int] = {}
+        self._issues: list[tuple[str, int]] = []  # per statement: hint, number before it
+        self.quantity_of: dict[str, str] = {}
         self.live: set[sp.Symbol] = set()
         self.equation = ""
         self.leg_counts: dict[str, int] = {}
@@ -79,11 +83,13 @@ class Builder:
         return Stage.join(self._stage[s] for s in expr.free_symbols)
 
     def _fresh(self, hint: str) -> str:
-        name, k = hint, 1
-        while name in self._names:
+        """A name that no other symbol has: the hint, or the hint and a number."""
+        k = self._issued.get(hint, 0) + 1
+        while (name := hint if k == 1 else f"{hint}_{k}") in self._names:
             k += 1
-            name = f"{hint}_{k}"
         self._names.add(name)
+        self._issues.append((hint, self._issued.get(hint, 0)))
+        self._issued[hint] = k
         return name
 
     # ---- values ----------------------------------------------------------------------
@@ -108,19 +114,16 @@ class Builder:
 
     def _record(self, expr: Any, stage: Stage, hint: str, named: bool,
                 total_of: str | None = None, key: Any = None) -> sp.Symbol:
-        name = self._fresh(hint or f"{self._temporary()}")
-        symbol = sp.Symbol(name, real=True)
+        hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
+        symbol = sp.Symbol(self._fresh(hint), real=True)
         self._stage[symbol] = stage
-        statement = Statement(symbol, expr, stage, self.equation, total_of, named)
+        statement = Statement(symbol, expr, stage, self.equation, total_of, named, hint)
         self.statements.append(statement)
         self.of[symbol] = statement
         key = expr if key is None else key
         self._value[key] = symbol
         self._made.append(key)
         return symbol
-
-    def _temporary(self) -> str:
-        return "v"
 
     def total(self, atom: Atom, leg_type: str, hint: str) -> Atom:
         """Sum of a value over the legs of a type."""
@@ -298,6 +301,9 @@ class Builder:
         for statement in self.statements[statements:]:
             del self.of[statement.target], self._stage[statement.target]
             self._names.discard(statement.target.name)
+        for hint, before in reversed(self._issues[statements:]):
+            self._issued[hint] = before
+        del self._issues[statements:]
         del self.statements[statements:]
         for key in self._made[made:]:
             del self._value[key]

@@ -257,7 +257,7 @@ class Lowering:
     def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
         axes = [self.axis_column(frame, "base", k) for k in range(3)]
         return tuple(  # type: ignore[return-value]
-            self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_{_XYZ[k]}")
+            self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_tip_{_XYZ[k]}")
             for k, axis in enumerate(axes))
 
     def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:

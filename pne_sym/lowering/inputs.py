@@ -85,15 +85,21 @@ def _quaternion(first: int) -> tuple[list[Assignment], Check]:
 
 
 def leg_inputs(derivation: Derivation, symbol: str, leg_type: str) -> tuple[str, tuple[int, ...]]:
-    """Input vector and index per leg of an extra coordinate, its rate or acceleration."""
+    """Input vector, and index in it per leg, of a scalar that belongs to a leg.
+
+    An extra coordinate (X), its rate (V) or acceleration (A), or a displacement that is
+    found by iteration (q).
+    """
     coordinates = derivation.coordinates
     assert coordinates is not None
     stem = symbol.split("_")
     joint = int(stem[1])
+    info = next(t for t in derivation.leg_types if t.name == leg_type)
+    if stem[0] == "q":
+        return "q", tuple(coordinates.joints.index((leg, joint - 1)) for leg in info.indices)
     vector, start = {
         "y": ("X", len(coordinates.pose)), "yd": ("V", len(coordinates.rates)),
         "ydd": ("A", len(coordinates.rates)),
     }[stem[0]]
-    info = next(t for t in derivation.leg_types if t.name == leg_type)
     places = [coordinates.extras.index((leg, joint - 1)) for leg in info.indices]
     return vector, tuple(start + place for place in places)

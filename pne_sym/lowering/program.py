@@ -11,7 +11,7 @@ from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.builder import Atom, Builder, Statement
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.inputs import leg_inputs, unpack
-from pne_sym.lowering.simplify import inline_single_use
+from pne_sym.lowering.simplify import inline_single_use, renamed
 from pne_sym.program.ir import (
     Assignment,
     Block,
@@ -43,10 +43,11 @@ def lower(derivation: Derivation) -> Program:
         SingularPattern: a leg's freedoms are dependent by structure.
     """
     builder = Builder()
+    builder.quantity_of = {e.id: e.name for e in derivation.equations()}
     builder.leg_counts = {t.name: len(t.indices) for t in derivation.leg_types}
     _declare(derivation, builder)
     slices = []
-    for group in GROUPS:
+    for group in (*GROUPS, *_closures(derivation)):
         stores = _cheapest_stores(derivation, builder, {a for _, names in group for a in names})
         for name, arrays in group:
             chosen = [(stage, store) for output, found in stores.items()
@@ -55,6 +56,12 @@ def lower(derivation: Derivation) -> Program:
                 present = {store.array for _, store in chosen}
                 slices.append(_Slice(name, tuple(a for a in arrays if a in present), chosen))
     return _program(derivation, builder, slices)
+
+
+def _closures(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
+    """A function per leg type whose displacements are found by iteration."""
+    return [((f"closure_{t.name}", (f"gap_{t.name}", f"jacobian_{t.name}")),)
+            for t in derivation.leg_types if not t.is_closed]
 
 
 def _cheapest_stores(derivation: Derivation, builder: Builder,
@@ -97,7 +104,7 @@ def _declare(derivation: Derivation, builder: Builder) -> None:
     for frame in derivation.frames:
         _declare_state(builder, frame.rotation or ())
     for name in derivation.notation:
-        if name not in defined and name.startswith(("y_", "yd_", "ydd_")):
+        if name not in defined and name.startswith(("y_", "yd_", "ydd_", "q_")):
             leg_type = _leg_type_of(derivation, name)
             builder.declare(sp.Symbol(name, real=True), Stage(Kind.STATE_LEG, leg_type))
 
@@ -212,6 +219,7 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
         statements, guards = part.statements(builder)
         run = [s for s in statements if s.stage.depends_on_state]
         run = inline_single_use(run, part.stores, guards)
+        run, part.stores, guards = renamed(run, part.stores, guards)
         used = _used(run, part.stores, guards)
         constants = {s for s in used if not builder.stage_of(s).depends_on_state}
         prepared |= constants
@@ -257,7 +265,7 @@ def _function(derivation: Derivation, builder: Builder, part: _Slice, blocks: tu
     tables = {t.name: tuple(sorted(s.name for s in constants if builder.stage_of(s).leg_type == t.name))
               for t in derivation.leg_types}
     return Function(
-        part.name, tuple(v for v in "XVA" if v in inputs), part.arrays,
+        part.name, tuple(v for v in "XVAq" if v in inputs), part.arrays,
         tuple(assignments), tuple(checks), blocks,
         {t: tuple(found) for t, found in per_leg.items()},
         tuple(sorted(s.name for s in constants if not builder.stage_of(s).per_leg)), tables)
@@ -281,8 +289,14 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
     n = derivation.coordinates.sizes
     legs = sum(len(t.indices) for t in derivation.leg_types)
     wide = 6 if derivation.coordinates.transmits_moments else 3
+    closures = {
+        f"{stem}_{t.name}": (len(t.indices), rows * (t.unknowns if stem == "jacobian" else 1))
+        for t in derivation.leg_types if not t.is_closed
+        for rows in ((2 if derivation.coordinates.planar else 3) + t.transmitted,)
+        for stem in ("gap", "jacobian")
+    }
     return {
-        "M": (n["NV"], n["NV"]), "Z": (n["NV"],), "H": (n["NV"], n["NU"]),
+        **closures, "M": (n["NV"], n["NV"]), "Z": (n["NV"],), "H": (n["NV"], n["NU"]),
         "Hk": (n["NV"], n["NC"]), "required": (n["NV"],), "q": (n["NJ"],), "qd": (n["NJ"],),
         "qdd": (n["NJ"],), "leg_force": (legs, wide), "drive": (n["NU"], wide),
         "constraint_direction": (n["NC"], wide), "potential": (1,), "constraints": (n["NC"],),

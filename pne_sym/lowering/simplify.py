@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import sympy as sp
@@ -45,8 +46,38 @@ def inline_single_use(
             inlined[statement.target] = expr
             continue
         kept.append(Statement(statement.target, expr, statement.stage, statement.equation,
-                              statement.total_of, statement.is_named))
+                              statement.total_of, statement.is_named, statement.hint))
     return kept
+
+
+def renamed(
+    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
+) -> tuple[list[Statement], list[tuple[Stage, Store]], list[Any]]:
+    """Number equal hints from one within a function, so that names do not depend on the others."""
+    own = {s.target for s in statements}
+    taken = {symbol.name for s in statements for symbol in s.expr.free_symbols - own}
+    for guard in guards:
+        taken |= {s.name for e in (guard.value, guard.scale) for s in e.free_symbols - own}
+    for _, store in stores:
+        taken |= {s.name for s in sp.sympify(store.value).free_symbols - own}
+    names: dict[Any, Any] = {}
+    issued: dict[str, int] = {}
+    for statement in statements:
+        k = issued.get(statement.hint, 0) + 1
+        while (name := statement.hint if k == 1 else f"{statement.hint}_{k}") in taken:
+            k += 1
+        issued[statement.hint] = k
+        taken.add(name)
+        names[statement.target] = sp.Symbol(name, real=True)
+
+    def again(expr: Any) -> Any:
+        return sp.sympify(expr).xreplace(names)
+
+    return (
+        [replace(s, target=names[s.target], expr=again(s.expr)) for s in statements],
+        [(stage, replace(store, value=again(store.value))) for stage, store in stores],
+        [replace(g, value=again(g.value), scale=again(g.scale)) for g in guards],
+    )
 
 
 def _occurrences(expr: Any, symbol: Any) -> int:
@@ -58,6 +89,8 @@ def _occurrences(expr: Any, symbol: Any) -> int:
 def _fits(user: Any, target: Any, expr: Any) -> bool:
     """Whether SymPy keeps the operation count when the value is put in place."""
     combined = user.xreplace({target: expr})
+    if any(abs(p.exp) != sp.Rational(1, 2) for p in combined.atoms(sp.Pow) if not p.exp.is_Integer):
+        return False
     return operations(combined) <= operations(user) + operations(expr) <= 2 * _LONGEST
 
 

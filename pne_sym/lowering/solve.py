@@ -92,8 +92,8 @@ class _System:
         determinant = self._minor(tuple(rows), tuple(columns))
         scale: Any = sp.S.One
         for i, j in zip(rows, columns, strict=True):
-            scale = scale * self.scale(i, j)
-        b.guard("singular", determinant, b.let(scale), 1)
+            scale = b.mul(scale, self.scale(i, j))
+        b.guard("singular", determinant, scale, 1)
         for j in columns:
             terms = []
             for i in rows:

@@ -7,7 +7,7 @@ from typing import Any
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
-from pne_sym.mechanics.inverse_kinematics import InverseKinematics, invert
+from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
@@ -16,7 +16,6 @@ from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
-from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.vector import Dot, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
 
@@ -87,32 +86,32 @@ def _derive_leg(
     constrained = len(freedoms) < (2 if space.planar else 3) + len(g.pairs)
     flat = constrained and not space.planar and not g.pairs
     normal = axis_across(g, freedoms) if flat else None
+    before = book.mark()
     inverse = invert(book, g, x, normal, constrained=constrained)
-    inverse.S = S
     if not inverse.is_closed:
-        joint, reason = min(inverse.reasons.items())
-        raise SpecError(
-            manipulator.name, f"legs[{leg_type.indices[0]}].joints[{joint - 1}]",
-            f"no closed form for this joint: {reason}",
-            "a chain whose inverse kinematics is closed")
+        book.reset(before)
+        inverse = given_displacements(book, g, inverse.reasons)
+    inverse.S = S
     for branch, signs in zip(inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True):
         book.parameters.add_branch(branch.symbol.name, leg_type.name, signs)
-    book.leg_types.append(_info(leg_type, inverse))
+    book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
     kinematics = MotionWriter(book, g, platform, space, inverse)
     motion = kinematics.write(prefix)
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", _NEWTON_EULER, prefix)
     dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
     leg = Leg(g, motion, dynamics)
     _joint_outputs(book, manipulator, leg, inverse)
+    if not inverse.is_closed:
+        _closure_outputs(book, leg, kinematics.tip_frame(), space)
     return leg, kinematics
 
 
-def _info(leg_type: LegType, inverse: InverseKinematics) -> LegTypeInfo:
+def _info(leg_type: LegType, inverse: InverseKinematics, transmitted: int) -> LegTypeInfo:
     count = len(leg_type.model.joints)
     return LegTypeInfo(
         leg_type.name, leg_type.architecture, leg_type.indices, count,
         tuple(inverse.methods[j] for j in range(1, count + 1)),
-        tuple(sorted(inverse.reasons.items())))
+        tuple(sorted(inverse.reasons.items())), transmitted)
 
 
 def _joint_outputs(book: Book, manipulator: Manipulator, leg: Leg,
@@ -136,6 +135,31 @@ def _joint_outputs(book: Book, manipulator: Manipulator, leg: Leg,
         book.outputs.append(Output(
             "leg_force", leg.dynamics.moment, ((0, 0),), tuple((c, c + 3) for c in range(3)),
             leg.name, tuple(indices)))
+
+
+def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
+    """Misfit of the loop closure and its derivative by the joint displacements."""
+    g, motion, name = leg.g, leg.motion, leg.name
+    gap = book.define(
+        g.name("gap"), motion.gap, r"\mathbf g",
+        "from the connection point as the links reach it to the platform's", Law.LOOP_CLOSURE,
+        unit="m", body=frame)
+    joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
+    axes = range(2 if space.planar else 3)
+    rows = tuple(range(g.leg_type.count))
+    width = len(joints)
+
+    def put(array: str, value: Any, columns: tuple[tuple[int, int], ...]) -> None:
+        book.outputs.append(Output(array, value, ((0, 0),), columns, name, rows, frame=frame))
+
+    put(f"gap_{name}", gap, tuple((c, c) for c in axes))
+    for k, j in enumerate(joints):
+        put(f"jacobian_{name}", motion.v[j], tuple((c, c * width + k) for c in axes))
+    for i, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), len(axes)):
+        put(f"gap_{name}", -Dot(link, platform), ((0, i),))
+        for k, j in enumerate(joints):
+            if g.turns(j):
+                put(f"jacobian_{name}", Dot(g.e[j], n), ((0, i * width + k),))
 
 
 def _potential(book: Book, platform: PlatformMotion, writer: PlatformWriter, legs: list[Leg],

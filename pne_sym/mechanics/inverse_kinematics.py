@@ -78,14 +78,35 @@ def invert(book: Book, g: LegGeometry, x: Vector, normal: Vector | None = None,
         constrained: the leg has fewer freedoms than the connection point: off the
             manifold the nearest closure is taken.
     """
-    solver = _Solver(book, g, normal, constrained)
+    solver = _Solver(book, g, normal, constrained=constrained)
     for j in range(1, g.count + 1):
         x = solver.joint(j, x)
     return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches, solver.x)
 
 
+def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> InverseKinematics:
+    """Displacements that the generated code finds by iteration on the loop closure.
+
+    Used for legs with a joint that has no closed form; `reasons` say why.
+    """
+    solver = _Solver(book, g, None, constrained=False)
+    for j in range(1, g.count + 1):
+        if g.is_extra(j):
+            solver._given(j, ZeroVector)
+            continue
+        name = g.name(f"q_{j}")
+        book.note_quantity(Quantity(
+            name, f"q_{{{j}}}", f"displacement of joint {j}, by iteration on the loop closure",
+            "rad" if g.turns(j) else "m"))
+        solver.q[j] = sp.Symbol(name, real=True)
+        solver.methods[j] = "numeric"
+        if g.turns(j):
+            solver._angle_of_displacement(j)
+    return InverseKinematics(solver.q, solver.methods, reasons, [], {})
+
+
 class _Solver:
-    def __init__(self, book: Book, g: LegGeometry, normal: Vector | None,
+    def __init__(self, book: Book, g: LegGeometry, normal: Vector | None, *,
                  constrained: bool) -> None:
         self.book = book
         self.g = g

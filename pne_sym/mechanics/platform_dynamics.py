@@ -109,8 +109,12 @@ class PlatformWriter:
         book.chapter("E", "Equilibrium of the platform", _PLATFORM)
         h, omega, alpha = self.moment, p.omega, p.alpha
         self.n_newton = self.n_euler = None
+        self.relative = -p.gravity if not space.translates else book.define(
+            "a_t", p.t_ddot - p.gravity, r"\mathbf a_t",
+            "acceleration of the platform origin, less gravity", Law.RATE, unit="m/s^2",
+            body="base", reference="Eq. 32")
         if space.translates:
-            rhs = self.mass * (p.t_ddot - p.gravity) + Cross(alpha, h) + Cross(omega, Cross(omega, h))
+            rhs = self.mass * self.relative + Cross(alpha, h) + Cross(omega, Cross(omega, h))
             self.n_newton = book.define(
                 "f_p", rhs, r"\mathbf f_p", "inertia force of the platform less its weight",
                 Law.NEWTON, unit="N", body="base", reference="Eq. 32",
@@ -118,7 +122,7 @@ class PlatformWriter:
         if space.rotates:
             self.n_euler = book.define(
                 "mu_p",
-                vector_sum((Cross(h, p.t_ddot - p.gravity), self.inertia @ alpha,
+                vector_sum((Cross(h, self.relative), self.inertia @ alpha,
                             Cross(omega, self.inertia @ omega))),
                 r"\boldsymbol\mu_p", "inertia moment of the platform less that of its weight",
                 Law.EULER, unit="N m", body="platform", reference="Eq. 33")
@@ -127,7 +131,7 @@ class PlatformWriter:
     def _tensor_form_newton(self) -> tuple[Any, ...]:
         if not self.space.rotates:
             return ()
-        return (self.mass * (self.p.t_ddot - self.p.gravity) + self.p.tensor @ self.moment,)
+        return (self.mass * self.relative + self.p.tensor @ self.moment,)
 
     def _required(self) -> None:
         """What H tau plus the external wrench must equal."""

@@ -1,0 +1,207 @@
+"""Mobility at home by screw rank: degrees of freedom, drives, constraints, the case of the paper.
+
+All legs' closure conditions are linear in the rates of platform and joints.  The rates that
+satisfy them all are the freedoms of the mechanism; no count of joints (Gruebler) is trusted.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pne_sym.model.closure import TWIST, leg_gap, pose_at
+from pne_sym.model.errors import SpecWarning
+from pne_sym.model.loops import Loops
+from pne_sym.model.manipulator import Manipulator
+
+Array = npt.NDArray[np.float64]
+
+DEPENDENT = 1e-8
+"""Singular values below it, of the largest, are zeros: home is closed to 1e-12."""
+
+CASES: dict[str, str] = {
+    "3.1": "ordinary",
+    "3.2": "hybrid: a leg with several drives",
+    "3.3": "static redundancy: more legs than freedoms",
+    "3.4": "redundant actuation: more drives than freedoms",
+    "3.5": "kinematic redundancy: driven joints beyond those the platform needs",
+    "3.6": "passive freedoms: joints that neither drives nor platform determine",
+    "3.7": "constrained: legs that restrict the platform",
+}
+"""The cases of section 3 of the paper, by number."""
+
+
+@dataclass(frozen=True)
+class Mobility:
+    """What moves, and what moves it, at home.
+
+    Attributes:
+        freedoms: degrees of freedom, by rank.
+        drives: driven joints.
+        constraints: conditions that the legs put on the platform, multipliers in the equations.
+        overconstrained: how many of the constraints follow from the others.
+        extra: coordinates beside those of the platform.
+        passive: those of them that are not driven.
+        undriven: freedoms that remain when all drives are held.
+        singular_legs: legs whose own freedoms are dependent.
+        cases: numbers of the sections of the paper that apply, such as "3.1".
+    """
+
+    freedoms: int
+    drives: int
+    constraints: int
+    overconstrained: int
+    extra: int
+    passive: int
+    undriven: int
+    singular_legs: tuple[int, ...]
+    cases: tuple[str, ...]
+
+    def __str__(self) -> str:
+        """One line for people."""
+        parts = [
+            _count(self.freedoms, "degree of freedom at home", "degrees of freedom at home"),
+            _count(self.drives, "drive"),
+            _count(self.constraints, "constraint"),
+            _count(self.extra, "extra coordinate"),
+        ]
+        if self.passive:
+            parts[-1] += f" ({self.passive} passive)"
+        if self.overconstrained:
+            parts[2] += f" ({self.overconstrained} dependent)"
+        cases = ", ".join(f"{CASES[case]} ({case})" for case in self.cases)
+        return f"{', '.join(parts)}; section 3 of the paper: {cases}"
+
+
+def mobility(manipulator: Manipulator) -> Mobility:
+    """Mobility of a manipulator at its home.
+
+    >>> from pne_sym import manipulators
+    >>> found = mobility(manipulators.load("tripod_3rps"))
+    >>> found.freedoms, found.drives, found.constraints
+    (3, 3, 3)
+    >>> print(mobility(manipulators.load("stewart")))
+    6 degrees of freedom at home, 6 drives, 0 constraints, 0 extra coordinates; \
+section 3 of the paper: ordinary (3.1)
+    """
+    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    closure, constraints, singular = _closure(manipulator)
+    twist = len(TWIST[manipulator.space])
+    rates = null_space(closure)
+    freedoms = rates.shape[1]
+    driven = np.array([joint.actuated for joint in joints], dtype=bool)
+    held = _rank(rates[twist:][driven])
+    extra = sum(joint.extra for joint in joints)
+    return Mobility(
+        freedoms=freedoms,
+        drives=int(driven.sum()),
+        constraints=constraints,
+        overconstrained=max(0, constraints + freedoms - twist - extra) if not singular else 0,
+        extra=extra,
+        passive=sum(joint.extra and not joint.actuated for joint in joints),
+        undriven=freedoms - held,
+        singular_legs=singular,
+        cases=_cases(manipulator, freedoms, constraints),
+    )
+
+
+def check_mobility(manipulator: Manipulator) -> Mobility:
+    """Mobility, with a warning where the drives leave freedoms that were not marked passive.
+
+    Warns with `SpecWarning`; passive extra coordinates are meant to move by themselves.
+    """
+    found = mobility(manipulator)
+    meant = found.freedoms - found.passive
+    problem = ""
+    if found.drives < meant:
+        problem = (
+            f"fewer drives than freedoms: {found.drives} for {found.freedoms}"
+            + (f", of which {found.passive} are passive extra coordinates" if found.passive else "")
+            + "; mark more joints actuated = true, or let it move freely"
+        )
+    elif found.undriven > found.passive:
+        free = _count(found.undriven - found.passive, "freedom", "freedoms")
+        problem = f"with all drives held, {free} remain at home; H is singular there"
+    if problem:
+        warnings.warn(f"{manipulator.name}: legs: {problem}", SpecWarning, stacklevel=2)
+    return found
+
+
+def drive_quality(manipulator: Manipulator) -> float:
+    """How well the drives hold the mechanism at home: 0 not at all, 1 at best.
+
+    The smallest singular value of the drives' rates over all motions of unit size.
+    """
+    closure, _, _ = _closure(manipulator)
+    rates = null_space(closure)
+    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    wanted = np.array([joint.actuated or joint.extra for joint in joints], dtype=bool)
+    rows = rates[len(TWIST[manipulator.space]) :][wanted]
+    if rows.shape[0] < rows.shape[1] or not rows.size:
+        return 0.0
+    return float(np.linalg.svd(rows, compute_uv=False)[-1])
+
+
+def null_space(matrix: Array) -> Array:
+    """Orthonormal columns that a matrix maps to zero."""
+    _, values, vt = np.linalg.svd(matrix)
+    rank = int(np.sum(values > DEPENDENT * max(1.0, float(values.max(initial=0.0)))))
+    basis: Array = vt[rank:].T
+    return basis
+
+
+def _closure(manipulator: Manipulator) -> tuple[Array, int, tuple[int, ...]]:
+    """Closure conditions by the rates of platform and joints; constraints; singular legs."""
+    m = manipulator
+    loops = Loops(m.space, m.legs, m.fixed_centre)
+    pose = pose_at(m.space, m.home.X, m.fixed_centre)
+    twist, q = TWIST[m.space], np.array(m.home.q)
+    rows, constraints, singular = [], 0, []
+    for index, (leg, s) in enumerate(zip(m.legs, loops.slices(), strict=True)):
+        _, by_q, by_twist = leg_gap(leg, q[s], pose)
+        by_twist = by_twist[:, twist]
+        own = by_q[:, ~loops.extra[s]]
+        rank = _rank(own)
+        constraints += _rank(np.hstack([own, by_twist])) - rank
+        if rank < own.shape[1]:
+            singular.append(index)
+        row = np.zeros((by_q.shape[0], len(twist) + len(q)))
+        row[:, : len(twist)] = by_twist
+        row[:, len(twist) + s.start : len(twist) + s.stop] = by_q
+        rows.append(row)
+    return np.vstack(rows), constraints, tuple(singular)
+
+
+def _cases(manipulator: Manipulator, freedoms: int, constraints: int) -> tuple[str, ...]:
+    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
+    kinematic = any(joint.extra and joint.actuated for joint in joints)
+    found = []
+    if len(manipulator.legs) > freedoms:
+        found.append("3.3")
+    if max(drives) > 1:
+        if sum(drives) > freedoms:
+            found.append("3.4")
+        elif not kinematic:
+            found.append("3.2")
+    if kinematic:
+        found.append("3.5")
+    if any(joint.extra and not joint.actuated for joint in joints):
+        found.append("3.6")
+    if constraints:
+        found.append("3.7")
+    return tuple(found) or ("3.1",)
+
+
+def _rank(matrix: Array) -> int:
+    if not matrix.size:
+        return 0
+    values = np.linalg.svd(matrix, compute_uv=False)
+    return int(np.sum(values > DEPENDENT * max(1.0, float(values[0]))))
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"
