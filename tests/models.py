@@ -94,3 +94,10 @@ def at_path(form: Any, path: str) -> Any:
         name, index = match.groups()
         form = form[name] if name else form[int(index)]
     return form
+
+
+def parameter_names(manipulator: Manipulator) -> dict[str, str]:
+    """Entries of parameters and signs of branches -> leg type, or ""."""
+    table = bundle(manipulator).derivation.parameters
+    entries = {name: field.leg_type or "" for name, (field, _) in table.entries.items()}
+    return entries | {name: leg_type for name, (leg_type, _) in table.branches.items()}
