@@ -31,10 +31,20 @@ def motion(t: Array) -> tuple[Array, Array, Array]:
     x, y, z = 0.10 * np.sin(w * t), 0.05 * np.sin(2 * w * t), 0.75 + 0.03 * np.cos(w * t)
     yaw, zero = 0.2 * np.sin(w * t), np.zeros_like(t)
     X = stewart.pose_from_rpy(np.stack((x, y, z), -1), np.stack((zero, zero, yaw), -1))
-    rate = np.stack((0.10 * w * np.cos(w * t), 0.10 * w * np.cos(2 * w * t),
-                     -0.03 * w * np.sin(w * t), zero, zero, 0.2 * w * np.cos(w * t)), -1)
-    acceleration = np.stack((-w * w * x, -4 * w * w * y, -w * w * (z - 0.75), zero, zero,
-                             -w * w * yaw), -1)
+    rate = np.stack(
+        (
+            0.10 * w * np.cos(w * t),
+            0.10 * w * np.cos(2 * w * t),
+            -0.03 * w * np.sin(w * t),
+            zero,
+            zero,
+            0.2 * w * np.cos(w * t),
+        ),
+        -1,
+    )
+    acceleration = np.stack(
+        (-w * w * x, -4 * w * w * y, -w * w * (z - 0.75), zero, zero, -w * w * yaw), -1
+    )
     return X, rate, acceleration
 
 
@@ -44,9 +54,21 @@ def compiled(folder: str) -> ctypes.CDLL | None:
     if compiler is None:
         return None
     library = Path(folder) / "stewart.so"
-    subprocess.run(  # noqa: S603
-        [compiler, "-std=c99", "-O3", "-fno-math-errno", "-shared", "-fPIC",
-         str(FOLDER / "stewart.c"), "-o", str(library), "-lm"], check=True)
+    subprocess.run(
+        [
+            compiler,
+            "-std=c99",
+            "-O3",
+            "-fno-math-errno",
+            "-shared",
+            "-fPIC",
+            str(FOLDER / "stewart.c"),
+            "-o",
+            str(library),
+            "-lm",
+        ],
+        check=True,
+    )
     return ctypes.CDLL(str(library))
 
 
@@ -85,9 +107,11 @@ def main() -> None:
             print(f"\nThe same from the compiled C: largest relative difference {gap:.1e}")
     manifest = json.loads((FOLDER / "stewart.json").read_text(encoding="utf-8"))
     print("\nOperations for one state (mul, add, div, sqrt), six legs, live parameters:")
-    for name, what in (("dynamics", "M, Z and H together"),
-                       ("required", "inverse dynamics up to the 6 x 6 solve"),
-                       ("inverse_kinematics", "all joint displacements")):
+    for name, what in (
+        ("dynamics", "M, Z and H together"),
+        ("required", "inverse dynamics up to the 6 x 6 solve"),
+        ("inverse_kinematics", "all joint displacements"),
+    ):
         n = manifest["operations"][name]
         parts = [n[k] for k in ("mul", "add", "div", "sqrt")]
         print(f"  {what:40s} {' + '.join(map(str, parts))} = {sum(parts)}")

@@ -21,8 +21,9 @@ def compile_bundle(manipulator: Manipulator) -> Bundle:
     try:
         program = lower(derivation)
     except SingularPattern as error:
-        raise SpecError(manipulator.name, "legs", str(error),
-                        "legs whose freedoms are independent") from error
+        raise SpecError(
+            manipulator.name, "legs", str(error), "legs whose freedoms are independent"
+        ) from error
     return Bundle(manipulator, derivation, program)
 
 

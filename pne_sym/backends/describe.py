@@ -99,7 +99,9 @@ class Described:
 
 def safe_text(text: str) -> str:
     """A user's text, harmless in C comments, Python docstrings and Markdown."""
-    kept = "".join(ch if ch.isprintable() and ch not in '\\`*_<>{}[]$"#|~^&' else " " for ch in text)
+    kept = "".join(
+        ch if ch.isprintable() and ch not in '\\`*_<>{}[]$"#|~^&' else " " for ch in text
+    )
     return " ".join(kept.replace("/", " / ").split())[:200]
 
 
@@ -113,12 +115,21 @@ def describe(bundle: Bundle) -> Described:
         n = count_function(function, bundle.leg_counts)
         counts.append((function.name, n.mul, n.add, n.div, n.sqrt, n.trig))
     return Described(
-        bundle.name, safe_text(bundle.manipulator.title), bundle.name.upper(), c.sizes, c,
-        ", ".join((*c.pose, *extra)), ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
-        ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators), ", ".join(c.wrench),
-        tuple(counts), driven, tuple(k for k in range(len(c.rates), c.sizes["NV"])
-                                     if k not in driven), len(bundle.manipulator.legs),
-        not all(t.is_closed for t in bundle.derivation.leg_types))
+        bundle.name,
+        safe_text(bundle.manipulator.title),
+        bundle.name.upper(),
+        c.sizes,
+        c,
+        ", ".join((*c.pose, *extra)),
+        ", ".join((*c.rates, *(f"{e} rate" for e in extra))),
+        ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators),
+        ", ".join(c.wrench),
+        tuple(counts),
+        driven,
+        tuple(k for k in range(len(c.rates), c.sizes["NV"]) if k not in driven),
+        len(bundle.manipulator.legs),
+        not all(t.is_closed for t in bundle.derivation.leg_types),
+    )
 
 
 def _driven_rows(bundle: Bundle) -> tuple[int, ...]:
@@ -146,8 +157,9 @@ def field_views(bundle: Bundle) -> tuple[FieldView, ...]:
 def _field(f: ParameterField) -> FieldView:
     rows = [_literal(row) for row in f.default] if f.leg_type else [_literal(f.default)]
     shape = (len(f.default), *f.shape) if f.leg_type else f.shape
-    return FieldView(f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, _rule(f),
-                     f.leg_type is not None)
+    return FieldView(
+        f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, _rule(f), f.leg_type is not None
+    )
 
 
 def _rule(f: ParameterField) -> str:

@@ -45,19 +45,25 @@ def _manifest(bundle: Bundle) -> dict[str, Any]:
         "leg_types": [_leg_type(bundle, t) for t in bundle.derivation.leg_types],
         "parameters": [_parameter(f) for f in bundle.derivation.parameters.fields],
         "operations": {
-            name: _operations(f, bundle.leg_counts)
-            for name, f in bundle.program.functions.items()
+            name: _operations(f, bundle.leg_counts) for name, f in bundle.program.functions.items()
         },
         "digests": {"spec": spec_digest(bundle), "derivation": derivation_digest(bundle)},
     }
 
 
 def _leg_type(bundle: Bundle, t: Any) -> dict[str, Any]:
-    branches = {name: signs for name, (leg_type, signs)
-                in bundle.derivation.parameters.branches.items() if leg_type == t.name}
+    branches = {
+        name: signs
+        for name, (leg_type, signs) in bundle.derivation.parameters.branches.items()
+        if leg_type == t.name
+    }
     return {
-        "name": t.name, "architecture": t.title, "legs": t.indices,
-        "inverse_kinematics": t.methods, "no_closed_form": dict(t.reasons), "branches": branches,
+        "name": t.name,
+        "architecture": t.title,
+        "legs": t.indices,
+        "inverse_kinematics": t.methods,
+        "no_closed_form": dict(t.reasons),
+        "branches": branches,
     }
 
 
@@ -65,7 +71,10 @@ def _parameter(f: ParameterField) -> dict[str, Any]:
     path = re.sub(r"^legs\[\d+\]", "legs[i]", f.paths[0])
     legs = [int(found.group(1)) for p in f.paths if (found := re.match(r"legs\[(\d+)\]", p))]
     entry: dict[str, Any] = {
-        "name": f.name, "unit": f.unit, "shape": f.default.shape, "meaning": f.meaning,
+        "name": f.name,
+        "unit": f.unit,
+        "shape": f.default.shape,
+        "meaning": f.meaning,
         "path": path,
     }
     if legs:

@@ -74,22 +74,37 @@ class NumpyBackend:
         fields, c = field_views(bundle), bundle.coordinates
         driven = tuple(c.joints.index(a) for a in c.actuators)
         return ModuleView(
-            describe(bundle), fields, tuple(line for f in fields for line in _default_lines(f)),
-            bundle.derivation.leg_types, driven,
+            describe(bundle),
+            fields,
+            tuple(line for f in fields for line in _default_lines(f)),
+            bundle.derivation.leg_types,
+            driven,
             tuple(k for k, j in enumerate(driven) if c.turning[j]),
-            tuple(leg for leg, _ in c.actuators), _closures(bundle),
-            tuple(c.joints.index(e) for e in c.extras), c.turning, writer.branches(), writer.prepare(),
-            tuple(writer.function(f) for f in bundle.program.functions.values()), plans)
+            tuple(leg for leg, _ in c.actuators),
+            _closures(bundle),
+            tuple(c.joints.index(e) for e in c.extras),
+            c.turning,
+            writer.branches(),
+            writer.prepare(),
+            tuple(writer.function(f) for f in bundle.program.functions.values()),
+            plans,
+        )
 
 
 def _closures(bundle: Bundle) -> tuple[ClosureView, ...]:
     """What the iteration on the loop closure needs, per leg type."""
     c = bundle.coordinates
     return tuple(
-        ClosureView(f"_CLOSURE_{t.name.upper()}",
-                    [[c.joints.index((leg, j)) for j in range(t.joints) if t.methods[j] != "given"]
-                     for leg in t.indices])
-        for t in bundle.derivation.leg_types if not t.is_closed)
+        ClosureView(
+            f"_CLOSURE_{t.name.upper()}",
+            [
+                [c.joints.index((leg, j)) for j in range(t.joints) if t.methods[j] != "given"]
+                for leg in t.indices
+            ],
+        )
+        for t in bundle.derivation.leg_types
+        if not t.is_closed
+    )
 
 
 def _default_lines(f: FieldView) -> list[str]:
@@ -132,7 +147,11 @@ class _Writer:
         """Unpack a tuple; nothing for an empty one."""
         if not names:
             return []
-        line = f"{', '.join(names)}, = {source}" if len(names) == 1 else f"{', '.join(names)} = {source}"
+        line = (
+            f"{', '.join(names)}, = {source}"
+            if len(names) == 1
+            else f"{', '.join(names)} = {source}"
+        )
         if len(line) <= _WIDTH - 4:
             return [line]
         return ["(", *wrap("    " + ", ".join(names) + ",", _WIDTH - 4, "    "), f") = {source}"]
@@ -176,7 +195,8 @@ class _Writer:
         """Signs of the assembly branches, per leg."""
         return tuple(
             f'"{name}": np.array([{", ".join(f"{s}.0" for s in signs)}]),'
-            for name, (_, signs) in self.bundle.derivation.parameters.branches.items())
+            for name, (_, signs) in self.bundle.derivation.parameters.branches.items()
+        )
 
     def prepare(self) -> str:
         """Body of the function that computes the prepared values."""
@@ -240,15 +260,20 @@ class _Parts:
         self.total = next((b for b in blocks if not b.leg_type and b is not self.before), None)
         made = [str(a.target) for a in function.unpack]
         made += [str(a.target) for a in (self.before.assignments if self.before else ())]
-        later = {s.name for b in [*self.legs, *([self.total] if self.total else [])]
-                 for s in _block_symbols(b)}
+        later = {
+            s.name
+            for b in [*self.legs, *([self.total] if self.total else [])]
+            for s in _block_symbols(b)
+        }
         self.passed = [n for n in dict.fromkeys(made) if n in later]
 
     def text(self, counts: Any) -> str:
         """All parts as functions."""
         f, name = self.f, self.f.name
-        comment = (f"# {name}: {counts.mul} mul, {counts.add} add, {counts.div} div, "
-                   f"{counts.sqrt} sqrt, {counts.trig} trig")
+        comment = (
+            f"# {name}: {counts.mul} mul, {counts.add} add, {counts.div} div, "
+            f"{counts.sqrt} sqrt, {counts.trig} trig"
+        )
         parts = [comment + "\n" + self._before(name)]
         parts += [self._leg(name, block) for block in self.legs]
         if self.total:
@@ -278,8 +303,12 @@ class _Parts:
         stores = self._store_values(self.before)
         body.append(f"ok = {self._input_checks(checks)}")
         body += self.w.returns(["ok", f"({self._tuple(self.passed)})", f"({self._tuple(stores)})"])
-        return self._define(f"_{name}_before(c, {', '.join(self.f.inputs)}, f)"
-                            if self.f.inputs else f"_{name}_before(c, f)", body)
+        return self._define(
+            f"_{name}_before(c, {', '.join(self.f.inputs)}, f)"
+            if self.f.inputs
+            else f"_{name}_before(c, f)",
+            body,
+        )
 
     def _input_checks(self, checks: list[Any]) -> str:
         parts = [f"({c.value} > 0.0)" for c in checks if c.trouble == "invalid"]
@@ -318,8 +347,9 @@ class _Parts:
         body += self.w.statements(block.assignments)
         body.append(f"ok = {self.w.checks(block.checks)}")
         sums = [self.w.text(value) for _, value in block.sums]
-        body += self.w.returns(["ok", f"({self._tuple(sums)})",
-                                f"({self._tuple(self._store_values(block))})"])
+        body += self.w.returns(
+            ["ok", f"({self._tuple(sums)})", f"({self._tuple(self._store_values(block))})"]
+        )
         return self._define(f"_{name}_{leg}(c, k, x, s, f)", body)
 
     def _after(self, name: str) -> str:
@@ -344,8 +374,9 @@ class _Parts:
         arrays = tuple((a, shapes[a]) for a in self.f.arrays)
         lines += wrap(f"    arrays={arrays!r},", _WIDTH, "        ")
         before = self._shared(self.before, self.f.unpack)
-        lines += self._listing("    before", f"_{name}_before", before,
-                               self._targets(self.before, shapes))
+        lines += self._listing(
+            "    before", f"_{name}_before", before, self._targets(self.before, shapes)
+        )
         lines.append("    legs=(")
         for block in self.legs:
             lines += self._leg_plan(name, block, shapes)
@@ -353,13 +384,24 @@ class _Parts:
         if self.total:
             used = {s.name for s in _block_symbols(self.total)}
             passed = [k for k, n in enumerate(self.passed) if n in used]
-            lines += self._listing("    after", f"_{name}_after", self._shared(self.total),
-                                   self._targets(self.total, shapes), passed)
+            lines += self._listing(
+                "    after",
+                f"_{name}_after",
+                self._shared(self.total),
+                self._targets(self.total, shapes),
+                passed,
+            )
         lines.append(")")
         return "\n".join(lines)
 
-    def _listing(self, key: str, function: str, names: list[str], targets: list[str],
-                 passed: list[int] | None = None) -> list[str]:
+    def _listing(
+        self,
+        key: str,
+        function: str,
+        names: list[str],
+        targets: list[str],
+        passed: list[int] | None = None,
+    ) -> list[str]:
         lines = [f"{key}=_Part("]
         inner = "        "
         lines.append(f"{inner}{function},")
@@ -368,8 +410,11 @@ class _Parts:
             lines += wrap(f"{inner}{tuple(passed)!r},", _WIDTH, inner)
         else:
             lines.append(f"{inner}None,")
-        lines.append(f"{inner}({', '.join(targets)}{',' if targets else ''}),"
-                     if len(targets) < 4 else f"{inner}(")
+        lines.append(
+            f"{inner}({', '.join(targets)}{',' if targets else ''}),"
+            if len(targets) < 4
+            else f"{inner}("
+        )
         if len(targets) >= 4:
             lines += wrap(f"{inner}    " + ", ".join(targets) + ",", _WIDTH, f"{inner}    ")
             lines.append(f"{inner}),")

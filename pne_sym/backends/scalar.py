@@ -61,13 +61,20 @@ class ScalarPrinter(StrPrinter):
         return self._number(float(expr))
 
     def _print_Add(self, expr: Any, order: Any = None) -> str:
-        terms = sorted(expr.args, key=lambda t: (t.could_extract_minus_sign(), sp.default_sort_key(t)))
+        terms = sorted(
+            expr.args, key=lambda t: (t.could_extract_minus_sign(), sp.default_sort_key(t))
+        )
         text = ""
         for term in terms:
             negative = term.could_extract_minus_sign()
             body = self.parenthesize(-term if negative else term, PRECEDENCE["Add"])
-            text += f" - {body}" if negative and text else f"-{body}" if negative else (
-                f" + {body}" if text else body)
+            text += (
+                f" - {body}"
+                if negative and text
+                else f"-{body}"
+                if negative
+                else (f" + {body}" if text else body)
+            )
         return text
 
     def _print_Mul(self, expr: Any) -> str:
@@ -93,16 +100,23 @@ class ScalarPrinter(StrPrinter):
         if not exponent.is_Integer:
             raise TypeError(f"no power {exponent} in generated code")
         factor = self.parenthesize(base, PRECEDENCE["Mul"])
-        return f"({'*'.join([factor] * int(exponent))})" if not base.is_Symbol else "*".join(
-            [factor] * int(exponent))
+        return (
+            f"({'*'.join([factor] * int(exponent))})"
+            if not base.is_Symbol
+            else "*".join([factor] * int(exponent))
+        )
 
     def parenthesize(self, item: Any, level: int, strict: bool = False) -> str:
         """Parentheses where the precedence needs them; products stand for powers."""
         product = item.is_Pow and item.exp.is_Integer and item.exp > 1
         own = PRECEDENCE["Mul"] if product else precedence(item)
         text = self._print(item)
-        return f"({text})" if own < level or (own == level and not strict and level == PRECEDENCE["Pow"]
-                                              and not item.is_Symbol) else str(text)
+        return (
+            f"({text})"
+            if own < level
+            or (own == level and not strict and level == PRECEDENCE["Pow"] and not item.is_Symbol)
+            else str(text)
+        )
 
     def _print_Function(self, expr: Any) -> str:
         name = self.dialect.functions.get(type(expr).__name__)

@@ -55,9 +55,7 @@ class Book:
             raise ValueError(f"the name {quantity.name!r} is already used")
         self.notation[quantity.name] = quantity
 
-    def give(
-        self, symbol: Any, frame: str, components: Sequence[Any], quantity: Quantity
-    ) -> Any:
+    def give(self, symbol: Any, frame: str, components: Sequence[Any], quantity: Quantity) -> Any:
         """Introduce a given vector, tensor or scalar with its components."""
         self.note_quantity(quantity)
         self.givens.append(Given(symbol, frame, tuple(components)))
@@ -133,7 +131,9 @@ class Book:
     def _needed(self) -> set[str]:
         """Names that the outputs need, through right-hand sides, forms and conditions."""
         definitions = {e.name: e for *_, equations in self._chapters for e in equations}
-        frames = [v for f in self.frames for v in (*(f.axes or ()), *(f.rows or ()), *(f.angle or ()))]
+        frames = [
+            v for f in self.frames for v in (*(f.axes or ()), *(f.rows or ()), *(f.angle or ()))
+        ]
         frames += [v for basis in self.bases for v in (*basis.vectors, *basis.scales)]
         needed: set[str] = set()
         stack = [n for v in [*(o.value for o in self.outputs), *frames] for n in names_in(v)]
@@ -144,8 +144,11 @@ class Book:
             needed.add(name)
             if name in definitions:
                 equation = definitions[name]
-                parts = [equation.rhs, *equation.forms,
-                         *(x for c in equation.conditions for x in (c.value, c.scale))]
+                parts = [
+                    equation.rhs,
+                    *equation.forms,
+                    *(x for c in equation.conditions for x in (c.value, c.scale)),
+                ]
                 stack.extend(n for part in parts for n in names_in(part))
         return needed
 

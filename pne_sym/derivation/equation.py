@@ -15,8 +15,14 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation.parameters import ParameterTable
-from pne_sym.vector import LegSum, RuleApplication, TensorLegSum, TensorSymbol, VectorLegSum
-from pne_sym.vector import VectorSymbol
+from pne_sym.vector import (
+    LegSum,
+    RuleApplication,
+    TensorLegSum,
+    TensorSymbol,
+    VectorLegSum,
+    VectorSymbol,
+)
 
 
 class Law(enum.StrEnum):
@@ -294,8 +300,11 @@ class Coordinates:
         """NQ, NV, NU, NC, NW, NJ: sizes of X, V, tau, lambda, wrench, q."""
         extra = len(self.extras)
         return {
-            "NQ": len(self.pose) + extra, "NV": len(self.rates) + extra,
-            "NU": len(self.actuators), "NC": len(self.constraints), "NW": len(self.wrench),
+            "NQ": len(self.pose) + extra,
+            "NV": len(self.rates) + extra,
+            "NU": len(self.actuators),
+            "NC": len(self.constraints),
+            "NW": len(self.wrench),
             "NJ": len(self.joints),
         }
 

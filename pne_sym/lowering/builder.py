@@ -112,8 +112,15 @@ class Builder:
         self._value[key] = sign * symbol
         return symbol
 
-    def _record(self, expr: Any, stage: Stage, hint: str, named: bool,
-                total_of: str | None = None, key: Any = None) -> sp.Symbol:
+    def _record(
+        self,
+        expr: Any,
+        stage: Stage,
+        hint: str,
+        named: bool,
+        total_of: str | None = None,
+        key: Any = None,
+    ) -> sp.Symbol:
         hint = hint or f"{self.quantity_of.get(self.equation, 'v')}_t"
         symbol = sp.Symbol(self._fresh(hint), real=True)
         self._stage[symbol] = stage

@@ -9,6 +9,7 @@ of an equation the cheapest is taken.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import Any
 
 import sympy as sp
@@ -49,11 +50,14 @@ class Lowering:
         self._undo: list[tuple[dict[Any, Any], Any]] = []
         self._depth = 0
         self._in_progress: set[str] = set()
-        self._dual = {w.name: (basis, k) for basis in derivation.bases
-                      for k, w in enumerate(basis.duals)}
-        self._named_parts = {(e.rhs.args[0].name, e.rhs.args[1]): e.name
-                             for e in derivation.equations() if isinstance(e.rhs, n.Dot)
-                             and getattr(e.rhs.args[0], "name", "") in self._dual}
+        self._dual = {
+            w.name: (basis, k) for basis in derivation.bases for k, w in enumerate(basis.duals)
+        }
+        self._named_parts = {
+            (e.rhs.args[0].name, e.rhs.args[1]): e.name
+            for e in derivation.equations()
+            if isinstance(e.rhs, n.Dot) and getattr(e.rhs.args[0], "name", "") in self._dual
+        }
         self._basis_frame: dict[int, str] = {}
         self._axis_columns: dict[tuple[str, str, int], Triple] = {}
 
@@ -110,8 +114,7 @@ class Lowering:
 
     def _ensure_new(self, equation: Equation) -> None:
         needed = sorted(names_in(equation.rhs))
-        optional = sorted(set().union(*(names_in(f) for f in equation.forms), set())
-                          - set(needed))
+        optional = sorted(set().union(*(names_in(f) for f in equation.forms), set()) - set(needed))
         for other in needed + optional:
             self.ensure(other)
         for other in needed:
@@ -119,8 +122,12 @@ class Lowering:
         self.b.equation = equation.id
         self._lower(equation)
         for condition in equation.conditions:
-            self.b.guard(condition.trouble.value, self.scalar(condition.value),
-                         self.scalar(condition.scale), condition.power)
+            self.b.guard(
+                condition.trouble.value,
+                self.scalar(condition.value),
+                self.scalar(condition.scale),
+                condition.power,
+            )
 
     def _keep(self, name: str) -> None:
         if name in self._scalars:
@@ -141,10 +148,10 @@ class Lowering:
             if name in self._dual:
                 value = self._dual_vector(name, frame)
             else:
-                value = self.cheapest([lambda f=f: self.vector(f, frame, name) for f in forms])
+                value = self.cheapest([partial(self.vector, f, frame, name) for f in forms])
             self._store(self._vectors, (name, frame), value)
         else:
-            value = self.cheapest([lambda f=f: self.tensor(f, frame, name) for f in forms])
+            value = self.cheapest([partial(self.tensor, f, frame, name) for f in forms])
             if lhs.is_symmetric:
                 value = self._symmetrised(value)
             self._store(self._tensors, (name, frame), value)
@@ -158,8 +165,11 @@ class Lowering:
         if body is not None:
             return body
         frames = self._frames_of(forms[0])
-        costs = [self._attempt(lambda f=f: self._any(forms[0], f))[0] for f in frames]
+        costs = [self._attempt(partial(self._any, forms[0], f))[0] for f in frames]
         return frames[costs.index(min(costs))]
+
+    def _all(self, vectors: Sequence[Any], frame: str) -> list[Triple]:
+        return [self.vector(v, frame) for v in vectors]
 
     def _any(self, expr: Any, frame: str) -> Any:
         return self.vector(expr, frame) if isinstance(expr, n.Vector) else self.tensor(expr, frame)
@@ -183,7 +193,7 @@ class Lowering:
             upper, lower = t[i][j], t[j][i]
             best = lower if self.b.cost([lower]) < self.b.cost([upper]) else upper
             rows[i][j] = rows[j][i] = best
-        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))  # type: ignore[return-value]
+        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
 
     # ---- vectors -------------------------------------------------------------------------
 
@@ -216,8 +226,11 @@ class Lowering:
         makers = [lambda: self.rotate(self._vectors[symbol.name, home], home, frame, symbol.name)]
         equation = self.definition[symbol.name]
         if symbol.name not in self._dual:
-            makers += [lambda f=f: self.vector(f, frame, symbol.name)
-                       for f in (equation.rhs, *equation.forms) if self._is_there(f, frame)]
+            makers += [
+                partial(self.vector, f, frame, symbol.name)
+                for f in (equation.rhs, *equation.forms)
+                if self._is_there(f, frame)
+            ]
         before, self.b.equation = self.b.equation, equation.id
         value = self.cheapest(makers)
         self.b.equation = before
@@ -225,9 +238,12 @@ class Lowering:
 
     def _is_there(self, expr: Any, frame: str) -> bool:
         """Whether all vectors of an expression have components in a frame already."""
-        return all((symbol.name, frame) in self._vectors or (symbol.name, frame) in self._tensors
-                   or (symbol in self.given and self.given[symbol].frame == frame)
-                   for symbol in _symbols(expr))
+        return all(
+            (symbol.name, frame) in self._vectors
+            or (symbol.name, frame) in self._tensors
+            or (symbol in self.given and self.given[symbol].frame == frame)
+            for symbol in _symbols(expr)
+        )
 
     def rotate(self, v: Triple, origin: str, target: str, hint: str = "") -> Triple:
         """Components of a vector in another frame: step by step, or by axis columns."""
@@ -256,24 +272,33 @@ class Lowering:
 
     def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
         axes = [self.axis_column(frame, "base", k) for k in range(3)]
-        return tuple(  # type: ignore[return-value]
+        return tuple(
             self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_tip_{_XYZ[k]}")
-            for k, axis in enumerate(axes))
+            for k, axis in enumerate(axes)
+        )
 
     def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
         steps = self.frames.steps(origin, target)
         for k, step in enumerate(steps):
             last = k == len(steps) - 1
-            v = self.frames.apply(step, v, f"{hint}_in_base" if last and target == "base" else
-                                  f"{hint}_r{k}")
+            v = self.frames.apply(
+                step, v, f"{hint}_in_base" if last and target == "base" else f"{hint}_r{k}"
+            )
         return v
 
     def _by_columns(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
         columns = [self.axis_column(origin, target, k) if v[k] != 0 else None for k in range(3)]
-        return tuple(  # type: ignore[return-value]
-            self.b.add([self.b.mul(v[k], column[i]) for k, column in enumerate(columns)
-                        if column is not None], f"{hint}_in_base_{_XYZ[i]}")
-            for i in range(3))
+        return tuple(
+            self.b.add(
+                [
+                    self.b.mul(v[k], column[i])
+                    for k, column in enumerate(columns)
+                    if column is not None
+                ],
+                f"{hint}_in_base_{_XYZ[i]}",
+            )
+            for i in range(3)
+        )
 
     def axis_column(self, origin: str, target: str, k: int) -> Triple:
         """Axis k of a frame in another: along a vector known in both, by cross product, or turned."""
@@ -284,7 +309,8 @@ class Lowering:
         unit[k] = sp.S.One
         hint = f"axis_{_XYZ[k]}_{origin.replace('.', '_')}"
         makers: list[Callable[[], Triple]] = [
-            lambda: self._by_steps((unit[0], unit[1], unit[2]), origin, target, hint)]
+            lambda: self._by_steps((unit[0], unit[1], unit[2]), origin, target, hint)
+        ]
         along = self._vector_along(origin, target, k)
         if along is not None:
             makers.append(along)
@@ -297,15 +323,20 @@ class Lowering:
     def _vector_along(self, origin: str, target: str, k: int) -> Callable[[], Triple] | None:
         """A way by a vector whose only component in the origin frame is its k-th."""
         for (name, frame), v in self._vectors.items():
-            if frame != origin or v[k] == 0 or v[k].is_Number or any(
-                    v[i] != 0 for i in range(3) if i != k):
+            if (
+                frame != origin
+                or v[k] == 0
+                or v[k].is_Number
+                or any(v[i] != 0 for i in range(3) if i != k)
+            ):
                 continue
             same = self._same_vector(name, target)
             if same is not None:
                 length = v[k]
-                return lambda: tuple(  # type: ignore[return-value]
+                return lambda: tuple(
                     self.b.divide(c, length, f"axis_{_XYZ[k]}_{_XYZ[i]}")
-                    for i, c in enumerate(same))
+                    for i, c in enumerate(same)
+                )
         return None
 
     def _same_vector(self, name: str, target: str) -> Triple | None:
@@ -320,10 +351,13 @@ class Lowering:
 
     def _cross(self, a: Triple, c: Triple, hint: str = "") -> Triple:
         b = self.b
-        return tuple(  # type: ignore[return-value]
-            b.add((b.mul(a[(i + 1) % 3], c[(i + 2) % 3]), -b.mul(a[(i + 2) % 3], c[(i + 1) % 3])),
-                  f"{hint}_{_XYZ[i]}" if hint else "")
-            for i in range(3))
+        return tuple(
+            b.add(
+                (b.mul(a[(i + 1) % 3], c[(i + 2) % 3]), -b.mul(a[(i + 2) % 3], c[(i + 1) % 3])),
+                f"{hint}_{_XYZ[i]}" if hint else "",
+            )
+            for i in range(3)
+        )
 
     def _vector_cross(self, expr: Any, frame: str, hint: str) -> Triple:
         return self._cross(self.vector(expr.args[0], frame), self.vector(expr.args[1], frame), hint)
@@ -336,9 +370,10 @@ class Lowering:
         return self._sum(parts, hint)
 
     def _sum(self, parts: Sequence[Triple], hint: str) -> Triple:
-        return tuple(  # type: ignore[return-value]
-            self.b.add([p[i] for p in parts], f"{hint}_{_XYZ[i]}" if hint else "",
-                       named=bool(hint)) for i in range(3))
+        return tuple(
+            self.b.add([p[i] for p in parts], f"{hint}_{_XYZ[i]}" if hint else "", named=bool(hint))
+            for i in range(3)
+        )
 
     def _split_duals(self, terms: Iterable[Any]) -> tuple[list[Any], list[Any]]:
         """Terms, and combinations of reciprocal vectors by basis."""
@@ -364,31 +399,41 @@ class Lowering:
         if divisor is not None:
             bottom = self.scalar(divisor)
             top = self.scalar(factor * divisor)
-            return tuple(  # type: ignore[return-value]
+            return tuple(
                 self.b.divide(self.b.mul(top, c), bottom, f"{hint}_{_XYZ[i]}" if hint else "")
-                for i, c in enumerate(v))
+                for i, c in enumerate(v)
+            )
         if all(c == 0 for c in v):
             return v
         s = self.scalar(factor)
-        return tuple(  # type: ignore[return-value]
-            self.b.mul(s, c, f"{hint}_{_XYZ[i]}" if hint else "") for i, c in enumerate(v))
+        return tuple(
+            self.b.mul(s, c, f"{hint}_{_XYZ[i]}" if hint else "") for i, c in enumerate(v)
+        )
 
     def _vector_apply(self, expr: Any, frame: str, hint: str) -> Triple:
         v = self.vector(expr.args[1], frame)
         t = self.tensor(expr.args[0], frame)
-        return tuple(  # type: ignore[return-value]
-            self.b.add([self.b.mul(t[i][k], v[k]) for k in range(3)],
-                       f"{hint}_{_XYZ[i]}" if hint else "") for i in range(3))
+        return tuple(
+            self.b.add(
+                [self.b.mul(t[i][k], v[k]) for k in range(3)], f"{hint}_{_XYZ[i]}" if hint else ""
+            )
+            for i in range(3)
+        )
 
     def _vector_axial(self, expr: Any, frame: str, hint: str) -> Triple:
         inner = expr.args[0]
         if isinstance(inner, n.Compose) and getattr(inner.args[1], "is_symmetric", False):
-            return self._moment_of(self.tensor(inner.args[0], frame),
-                                   self.tensor(inner.args[1], frame), hint)
+            return self._moment_of(
+                self.tensor(inner.args[0], frame), self.tensor(inner.args[1], frame), hint
+            )
         t = self.tensor(expr.args[0], frame)
-        return tuple(  # type: ignore[return-value]
-            self.b.add((t[(i + 2) % 3][(i + 1) % 3], -t[(i + 1) % 3][(i + 2) % 3]),
-                       f"{hint}_{_XYZ[i]}" if hint else "") for i in range(3))
+        return tuple(
+            self.b.add(
+                (t[(i + 2) % 3][(i + 1) % 3], -t[(i + 1) % 3][(i + 2) % 3]),
+                f"{hint}_{_XYZ[i]}" if hint else "",
+            )
+            for i in range(3)
+        )
 
     def _moment_of(self, B: Tensor9, S: Tensor9, hint: str) -> Triple:
         """Axial(B S) for symmetric S, products of inertia taken out once."""
@@ -396,11 +441,16 @@ class Lowering:
 
         def entry(i: int) -> Atom:
             j, k = (i + 1) % 3, (i + 2) % 3
-            return b.add((
-                b.mul(B[k][i], S[i][j]), b.mul(B[k][j], S[j][j]),
-                b.mul(S[j][k], b.difference(B[k][k], B[j][j])),
-                -b.mul(B[j][i], S[i][k]), -b.mul(B[j][k], S[k][k]),
-            ), f"{hint}_{_XYZ[i]}" if hint else "")
+            return b.add(
+                (
+                    b.mul(B[k][i], S[i][j]),
+                    b.mul(B[k][j], S[j][j]),
+                    b.mul(S[j][k], b.difference(B[k][k], B[j][j])),
+                    -b.mul(B[j][i], S[i][k]),
+                    -b.mul(B[j][k], S[k][k]),
+                ),
+                f"{hint}_{_XYZ[i]}" if hint else "",
+            )
 
         return (entry(0), entry(1), entry(2))
 
@@ -411,9 +461,10 @@ class Lowering:
     def _vector_total(self, expr: Any, frame: str, hint: str) -> Triple:
         value, leg_type = expr.args
         v = self.vector(value, frame, f"{hint}_leg" if hint else "")
-        return tuple(  # type: ignore[return-value]
+        return tuple(
             self.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{_XYZ[i]}")
-            for i, c in enumerate(v))
+            for i, c in enumerate(v)
+        )
 
     # ---- reciprocal bases ----------------------------------------------------------------
 
@@ -424,8 +475,7 @@ class Lowering:
                 self.ensure(getattr(vector, "name", ""))
             costs = []
             for frame in basis.frames:
-                cost, columns = self._attempt(
-                    lambda f=frame: [self.vector(v, f) for v in basis.vectors])
+                cost, columns = self._attempt(partial(self._all, basis.vectors, frame))
                 nonzero = sum(c not in (0, 1, -1) for column in columns for c in column)
                 costs.append((nonzero, cost))
             self._basis_frame[id(basis)] = basis.frames[costs.index(min(costs))]
@@ -486,8 +536,10 @@ class Lowering:
             return self._tensor_symbol(expr, frame)
         if expr in (n.ZeroTensor, n.Identity):
             one = sp.S.One if expr == n.Identity else sp.S.Zero
-            return tuple(tuple(one if i == j else sp.S.Zero for j in range(3))  # type: ignore[return-value]
-                         for i in range(3))
+            return tuple(
+                tuple(one if i == j else sp.S.Zero for j in range(3))  # type: ignore[return-value]
+                for i in range(3)
+            )
         operation = _TENSOR_OPERATIONS.get(type(expr))
         if operation is None:
             raise TypeError(f"no components for {type(expr).__name__}")
@@ -501,7 +553,7 @@ class Lowering:
         if symbol in self.given:
             given = self.given[symbol]
             c = given.components
-            value: Tensor9 = (tuple(c[:3]), tuple(c[3:6]), tuple(c[6:]))  # type: ignore[assignment]
+            value: Tensor9 = (tuple(c[:3]), tuple(c[3:6]), tuple(c[6:]))
             origin = given.frame
         else:
             self.ensure(symbol.name)
@@ -516,29 +568,34 @@ class Lowering:
         self.b.equation = before
         return self._store(self._tensors, key, rotated)  # type: ignore[no-any-return]
 
-    def rotate_tensor(self, t: Tensor9, origin: str, target: str, symmetric: bool,
-                      hint: str = "") -> Tensor9:
+    def rotate_tensor(
+        self, t: Tensor9, origin: str, target: str, symmetric: bool, hint: str = ""
+    ) -> Tensor9:
         """Components of a tensor in another frame."""
         if origin == target:
             return t
         makers = [lambda: self._tensor_by_steps(t, origin, target, symmetric)]
         if symmetric and target == "base":
-            makers += [lambda k=k: self._tensor_by_columns(t, origin, target, k, hint)
-                       for k in range(3)]
+            makers += [
+                partial(self._tensor_by_columns, t, origin, target, k, hint) for k in range(3)
+            ]
         return self.cheapest(makers)  # type: ignore[no-any-return]
 
     def _tensor_by_steps(self, t: Tensor9, origin: str, target: str, symmetric: bool) -> Tensor9:
         for step in self.frames.steps(origin, target):
             columns = [self.frames.apply(step, (t[0][j], t[1][j], t[2][j])) for j in range(3)]
-            rows = [self.frames.apply(step, (columns[0][i], columns[1][i], columns[2][i]))
-                    for i in range(3)]
+            rows = [
+                self.frames.apply(step, (columns[0][i], columns[1][i], columns[2][i]))
+                for i in range(3)
+            ]
             t = (rows[0], rows[1], rows[2])
             if symmetric and isinstance(step, ConstantStep):
                 t = self._symmetrised(t)
         return self._symmetrised(t) if symmetric else t
 
-    def _tensor_by_columns(self, t: Tensor9, origin: str, target: str, left: int,
-                           hint: str) -> Tensor9:
+    def _tensor_by_columns(
+        self, t: Tensor9, origin: str, target: str, left: int, hint: str
+    ) -> Tensor9:
         """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated."""
         b, k = self.b, left
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -546,22 +603,21 @@ class Lowering:
         half = sp.Rational(1, 2)
         xx = b.mul(half, b.add((t[i][i], -t[k][k])))
         yy = b.mul(half, b.add((t[j][j], -t[k][k])))
-        a = [b.add((b.mul(xx, x[m]), b.mul(t[i][j], y[m]), b.mul(t[i][k], z[m])))
-             for m in range(3)]
+        a = [b.add((b.mul(xx, x[m]), b.mul(t[i][j], y[m]), b.mul(t[i][k], z[m]))) for m in range(3)]
         c = [b.add((b.mul(yy, y[m]), b.mul(t[j][k], z[m]))) for m in range(3)]
         rows = [[sp.S.Zero] * 3 for _ in range(3)]
         for p in range(3):
             half_pp = b.add((b.mul(x[p], a[p]), b.mul(y[p], c[p])))
             rows[p][p] = b.add((t[k][k], b.mul(sp.Integer(2), half_pp)))
             for q in range(p + 1, 3):
-                rows[p][q] = rows[q][p] = b.add((
-                    b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p])))
-        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))  # type: ignore[return-value]
+                rows[p][q] = rows[q][p] = b.add(
+                    (b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p]))
+                )
+        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
 
     def _tensor_add(self, expr: Any, frame: str, hint: str) -> Tensor9:
         parts = [self.tensor(term, frame) for term in expr.args]
-        return self._entries(
-            lambda i, j: self.b.add([p[i][j] for p in parts], _entry(hint, i, j)))
+        return self._entries(lambda i, j: self.b.add([p[i][j] for p in parts], _entry(hint, i, j)))
 
     def _entries(self, make: Callable[[int, int], Atom]) -> Tensor9:
         return tuple(tuple(make(i, j) for j in range(3)) for i in range(3))  # type: ignore[return-value]
@@ -584,8 +640,11 @@ class Lowering:
         if isinstance(first, n.Skew) and first == second:
             return self._skew_squared(self.vector(first.args[0], frame), hint)
         a, c = self.tensor(first, frame), self.tensor(second, frame)
-        return self._entries(lambda i, j: self.b.add(
-            [self.b.mul(a[i][k], c[k][j]) for k in range(3)], _entry(hint, i, j)))
+        return self._entries(
+            lambda i, j: self.b.add(
+                [self.b.mul(a[i][k], c[k][j]) for k in range(3)], _entry(hint, i, j)
+            )
+        )
 
     def _skew_squared(self, w: Triple, hint: str) -> Tensor9:
         """w~ w~ = w w^T - (w . w) E: squares once."""
@@ -625,15 +684,16 @@ class Lowering:
             return self._dual_scalar(expr)
         if isinstance(expr, n.LegSum):
             value, leg_type = expr.args
-            return self.b.total(self.scalar(value), leg_type.name,
-                                f"{hint or 'total'}_{leg_type.name}")
+            return self.b.total(
+                self.scalar(value), leg_type.name, f"{hint or 'total'}_{leg_type.name}"
+            )
         if expr.is_Add:
-            return self.b.add([self.scalar(a) for a in expr.args], hint, named=True)
+            return self.b.add([self.scalar(a) for a in expr.args], hint, named=bool(hint))
         if expr.is_Mul:
             return self._product(expr, hint)
         if expr.is_Pow:
-            return self._power(*expr.args, hint)
-        return self.b.let(expr.func(*(self.scalar(a) for a in expr.args)), hint, named=True)
+            return self._power(expr.base, expr.exp, hint)
+        return self.b.let(expr.func(*(self.scalar(a) for a in expr.args)), hint, named=bool(hint))
 
     def _scalar_symbol(self, symbol: sp.Symbol) -> Atom:
         if symbol.name in self.definition:
@@ -675,7 +735,7 @@ class Lowering:
                 basis, k = found
                 return self._resolve(basis, other)[k]
         frames = self._frames_of(expr)
-        return self.cheapest([lambda f=f: self._dot_in(a, c, f, hint) for f in frames])  # type: ignore[no-any-return]
+        return self.cheapest([partial(self._dot_in, a, c, f, hint) for f in frames])
 
     def _dot_in(self, a: Any, c: Any, frame: str, hint: str) -> Atom:
         u, v = self.vector(a, frame), self.vector(c, frame)

@@ -43,9 +43,14 @@ class TurnStep:
 class Frames:
     """The tree of frames of a derivation."""
 
-    def __init__(self, derivation: Derivation, builder: Builder,
-                 components: Callable[[Any, str], Triple], scalar: Callable[[Any], Atom],
-                 store: Callable[[dict[Any, Any], Any, Any], Any]) -> None:
+    def __init__(
+        self,
+        derivation: Derivation,
+        builder: Builder,
+        components: Callable[[Any, str], Triple],
+        scalar: Callable[[Any], Atom],
+        store: Callable[[dict[Any, Any], Any, Any], Any],
+    ) -> None:
         self.b = builder
         self._store = store  # forgets with a rolled-back trial
         self._components = components
@@ -94,7 +99,7 @@ class Frames:
             entries = list(frame.rotation)
             if None in entries:
                 entries = self._fill(frame, entries)
-            rows = [tuple(sp.sympify(e) for e in entries[3 * i: 3 * i + 3]) for i in range(3)]
+            rows = [tuple(sp.sympify(e) for e in entries[3 * i : 3 * i + 3]) for i in range(3)]
             self._store(self._matrix, frame.name, (rows[0], rows[1], rows[2]))
         return self._matrix[frame.name]
 
@@ -121,9 +126,11 @@ class Frames:
         return [s for s in merged if not (isinstance(s, ConstantStep) and _is_identity(s.matrix))]
 
     def _product(self, a: Matrix, b: Matrix) -> Matrix:
-        rows = [tuple(self.b.add([self.b.mul(a[i][k], b[k][j]) for k in range(3)])
-                      for j in range(3)) for i in range(3)]
-        return (rows[0], rows[1], rows[2])  # type: ignore[return-value]
+        rows = [
+            tuple(self.b.add([self.b.mul(a[i][k], b[k][j]) for k in range(3)]) for j in range(3))
+            for i in range(3)
+        ]
+        return (rows[0], rows[1], rows[2])
 
     def apply(self, step: ConstantStep | TurnStep, v: Triple, hint: str = "") -> Triple:
         """Components after a step."""
@@ -132,16 +139,20 @@ class Frames:
             if x == 0 and y == 0:
                 return v
             c, s = self._scalar(step.c), step.sign * self._scalar(step.s)
-            return (b.add((b.mul(c, x), b.mul(s, y)), f"{hint}_x"),
-                    b.add((b.mul(c, y), -b.mul(s, x)), f"{hint}_y"), z)
-        return tuple(  # type: ignore[return-value]
+            return (
+                b.add((b.mul(c, x), b.mul(s, y)), f"{hint}_x"),
+                b.add((b.mul(c, y), -b.mul(s, x)), f"{hint}_y"),
+                z,
+            )
+        return tuple(
             b.add([b.mul(step.matrix[i][k], v[k]) for k in range(3)], f"{hint}_{'xyz'[i]}")
-            for i in range(3))
+            for i in range(3)
+        )
 
 
 def _transpose(m: Matrix) -> Matrix:
     rows = [tuple(m[j][i] for j in range(3)) for i in range(3)]
-    return (rows[0], rows[1], rows[2])  # type: ignore[return-value]
+    return (rows[0], rows[1], rows[2])
 
 
 def _is_identity(m: Matrix) -> bool:

@@ -33,7 +33,9 @@ def _symbol(name: str) -> sp.Symbol:
 
 def _twist(coordinates: Coordinates, vector: str, linear: str, angular: str) -> list[Assignment]:
     return [
-        Assignment(_symbol(f"{linear if c < 3 else angular}_{_AXES[c % 3]}"), entry(vector, k), vector)
+        Assignment(
+            _symbol(f"{linear if c < 3 else angular}_{_AXES[c % 3]}"), entry(vector, k), vector
+        )
         for k, c in enumerate(coordinates.components)
     ]
 
@@ -71,8 +73,16 @@ def _quaternion(first: int) -> tuple[list[Assignment], Check]:
 
     sx, sy, sz = (let(f"quaternion_s{a}", s * q) for a, q in zip(_AXES, (x, y, z), strict=True))
     wx, wy, wz = (let(f"quaternion_w{a}", w * q) for a, q in zip(_AXES, (sx, sy, sz), strict=True))
-    xx, xy, xz = let("quaternion_xx", x * sx), let("quaternion_xy", x * sy), let("quaternion_xz", x * sz)
-    yy, yz, zz = let("quaternion_yy", y * sy), let("quaternion_yz", y * sz), let("quaternion_zz", z * sz)
+    xx, xy, xz = (
+        let("quaternion_xx", x * sx),
+        let("quaternion_xy", x * sy),
+        let("quaternion_xz", x * sz),
+    )
+    yy, yz, zz = (
+        let("quaternion_yy", y * sy),
+        let("quaternion_yz", y * sz),
+        let("quaternion_zz", z * sz),
+    )
     rows = (
         (1 - (yy + zz), xy - wz, xz + wy),
         (xy + wz, 1 - (xx + zz), yz - wx),
@@ -98,7 +108,8 @@ def leg_inputs(derivation: Derivation, symbol: str, leg_type: str) -> tuple[str,
     if stem[0] == "q":
         return "q", tuple(coordinates.joints.index((leg, joint - 1)) for leg in info.indices)
     vector, start = {
-        "y": ("X", len(coordinates.pose)), "yd": ("V", len(coordinates.rates)),
+        "y": ("X", len(coordinates.pose)),
+        "yd": ("V", len(coordinates.rates)),
         "ydd": ("A", len(coordinates.rates)),
     }[stem[0]]
     places = [coordinates.extras.index((leg, joint - 1)) for leg in info.indices]

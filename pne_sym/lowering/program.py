@@ -23,15 +23,27 @@ from pne_sym.program.ir import (
     Stage,
     Store,
 )
+from pne_sym.vector import Tensor, Vector
 
 # Arrays of each function; functions of one group are lowered together, so that they share
 # what they have in common.
 GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
-    (("dynamics", ("M", "Z", "H", "Hk", "constraint_bias")), ("M", ("M",)), ("Z", ("Z",)),
-     ("H", ("H",)), ("Hk", ("Hk",)), ("constraint_bias", ("constraint_bias",))),
-    (("required", ("required", "H", "Hk")), ("inverse_kinematics", ("q",)),
-     ("joint_rates", ("qd",)), ("joint_accelerations", ("qdd",)), ("constraints", ("constraints",)),
-     ("legs", ("leg_force", "drive", "constraint_direction"))),
+    (
+        ("dynamics", ("M", "Z", "H", "Hk", "constraint_bias")),
+        ("M", ("M",)),
+        ("Z", ("Z",)),
+        ("H", ("H",)),
+        ("Hk", ("Hk",)),
+        ("constraint_bias", ("constraint_bias",)),
+    ),
+    (
+        ("required", ("required", "H", "Hk")),
+        ("inverse_kinematics", ("q",)),
+        ("joint_rates", ("qd",)),
+        ("joint_accelerations", ("qdd",)),
+        ("constraints", ("constraints",)),
+        ("legs", ("leg_force", "drive", "constraint_direction")),
+    ),
     (("potential", ("potential",)),),
 )
 
@@ -50,8 +62,12 @@ def lower(derivation: Derivation) -> Program:
     for group in (*GROUPS, *_closures(derivation)):
         stores = _cheapest_stores(derivation, builder, {a for _, names in group for a in names})
         for name, arrays in group:
-            chosen = [(stage, store) for output, found in stores.items()
-                      if output.array in arrays for stage, store in found]
+            chosen = [
+                (stage, store)
+                for output, found in stores.items()
+                if output.array in arrays
+                for stage, store in found
+            ]
             if chosen:
                 present = {store.array for _, store in chosen}
                 slices.append(_Slice(name, tuple(a for a in arrays if a in present), chosen))
@@ -60,12 +76,16 @@ def lower(derivation: Derivation) -> Program:
 
 def _closures(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
     """A function per leg type whose displacements are found by iteration."""
-    return [((f"closure_{t.name}", (f"gap_{t.name}", f"jacobian_{t.name}")),)
-            for t in derivation.leg_types if not t.is_closed]
+    return [
+        ((f"closure_{t.name}", (f"gap_{t.name}", f"jacobian_{t.name}")),)
+        for t in derivation.leg_types
+        if not t.is_closed
+    ]
 
 
-def _cheapest_stores(derivation: Derivation, builder: Builder,
-                     arrays: set[str]) -> dict[Output, list[tuple[Stage, Store]]]:
+def _cheapest_stores(
+    derivation: Derivation, builder: Builder, arrays: set[str]
+) -> dict[Output, list[tuple[Stage, Store]]]:
     """Lower the outputs of a group with each choice of rotations; keep the cheaper."""
     outputs = [o for o in derivation.outputs if o.array in arrays]
 
@@ -112,8 +132,9 @@ def _declare(derivation: Derivation, builder: Builder) -> None:
 def _leg_type_of(derivation: Derivation, name: str) -> str:
     if len(derivation.leg_types) == 1:
         return derivation.leg_types[0].name
-    return next(t.name for t in derivation.leg_types if name.endswith(f"_{t.name}")
-                or f"_{t.name}_" in name)
+    return next(
+        t.name for t in derivation.leg_types if name.endswith(f"_{t.name}") or f"_{t.name}_" in name
+    )
 
 
 def _declare_state(builder: Builder, components: Iterable[Any]) -> None:
@@ -127,8 +148,6 @@ def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
     """Entries of an output array with the atoms that go there."""
     value, b = output.value, lowering.b
     components: dict[tuple[int, int], Atom]
-    from pne_sym.vector import Tensor, Vector
-
     if isinstance(value, Tensor):
         t = lowering.tensor(value, output.frame)
         components = {(i, j): t[i][j] for i in range(3) for j in range(3)}
@@ -149,16 +168,18 @@ def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
         if output.leg_type:
             stage = Stage(Kind.STATE_LEG, output.leg_type)
         places = [(row, column)]
-        if (output.mirrored or output.symmetric) and (row, column) != (column, row):
-            places.append((column, row))
-        elif output.mirrored and output.leg_rows != output.leg_columns:
+        if ((output.mirrored or output.symmetric) and (row, column) != (column, row)) or (output.mirrored and output.leg_rows != output.leg_columns):
             places.append((column, row))
         for k, (r, c) in enumerate(places):
             swap = k == 1
             legs_r = output.leg_columns if swap else output.leg_rows
             legs_c = output.leg_rows if swap else output.leg_columns
-            found.append((stage, Store(output.array, atom, _place(r, legs_r, output),
-                                       _place(c, legs_c, output))))
+            found.append(
+                (
+                    stage,
+                    Store(output.array, atom, _place(r, legs_r, output), _place(c, legs_c, output)),
+                )
+            )
     return found
 
 
@@ -167,8 +188,8 @@ def _pairs(output: Output) -> list[tuple[tuple[int, int], tuple[int, Any]]]:
     return [(row, column) for row in output.rows for column in columns]
 
 
-def _place(position: int | None, per_leg: tuple[int, ...],
-           output: Output) -> int | tuple[int, ...] | None:
+def _place(position: Any, per_leg: tuple[int, ...], output: Output) -> Any:
+    """Index in an array, a table over the legs, or None for an array with one index."""
     if position is None:
         return None
     if not output.leg_type or not per_leg:
@@ -179,8 +200,9 @@ def _place(position: int | None, per_leg: tuple[int, ...],
 class _Slice:
     """The statements that a function needs."""
 
-    def __init__(self, name: str, arrays: tuple[str, ...],
-                 stores: list[tuple[Stage, Store]]) -> None:
+    def __init__(
+        self, name: str, arrays: tuple[str, ...], stores: list[tuple[Stage, Store]]
+    ) -> None:
         self.name = name
         self.arrays = arrays
         self.stores = stores
@@ -189,10 +211,16 @@ class _Slice:
         """Needed statements in order, and the guards that concern them."""
         wanted = {s for _, store in self.stores for s in sp.sympify(store.value).free_symbols}
         needed = _closure(builder, wanted)
-        equations = {s.equation for s in builder.statements if s.target in needed
-                     and s.stage.depends_on_state}
-        guards = [g for g in builder.guards
-                  if g.equation in equations and g.value.free_symbols <= needed | wanted]
+        equations = {
+            s.equation
+            for s in builder.statements
+            if s.target in needed and s.stage.depends_on_state
+        }
+        guards = [
+            g
+            for g in builder.guards
+            if g.equation in equations and g.value.free_symbols <= needed | wanted
+        ]
         extra = {s for g in guards for s in g.scale.free_symbols}
         needed |= _closure(builder, extra) | extra
         return [s for s in builder.statements if s.target in needed], guards
@@ -234,16 +262,23 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
     return Program(prepare, listed, functions, _shapes(derivation))
 
 
-def _used(statements: list[Statement], stores: list[tuple[Stage, Store]],
-          guards: list[Any]) -> set[Any]:
+def _used(
+    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
+) -> set[Any]:
     expressions = [s.expr for s in statements]
     expressions += [sp.sympify(store.value) for _, store in stores]
     expressions += [e for g in guards for e in (g.value, g.scale)]
     return {symbol for e in expressions for symbol in e.free_symbols}
 
 
-def _function(derivation: Derivation, builder: Builder, part: _Slice, blocks: tuple[Block, ...],
-              used: set[Any], constants: set[Any]) -> Function:
+def _function(
+    derivation: Derivation,
+    builder: Builder,
+    part: _Slice,
+    blocks: tuple[Block, ...],
+    used: set[Any],
+    constants: set[Any],
+) -> Function:
     assert derivation.coordinates is not None
     inputs, assignments, checks = [], [], []
     for vector, (named, conditions) in unpack(derivation.coordinates).items():
@@ -262,13 +297,21 @@ def _function(derivation: Derivation, builder: Builder, part: _Slice, blocks: tu
             per_leg.setdefault(stage.leg_type, []).append(LegInput(symbol, vector, indices))
             if vector not in inputs:
                 inputs.append(vector)
-    tables = {t.name: tuple(sorted(s.name for s in constants if builder.stage_of(s).leg_type == t.name))
-              for t in derivation.leg_types}
+    tables = {
+        t.name: tuple(sorted(s.name for s in constants if builder.stage_of(s).leg_type == t.name))
+        for t in derivation.leg_types
+    }
     return Function(
-        part.name, tuple(v for v in "XVAq" if v in inputs), part.arrays,
-        tuple(assignments), tuple(checks), blocks,
+        part.name,
+        tuple(v for v in "XVAq" if v in inputs),
+        part.arrays,
+        tuple(assignments),
+        tuple(checks),
+        blocks,
         {t: tuple(found) for t, found in per_leg.items()},
-        tuple(sorted(s.name for s in constants if not builder.stage_of(s).per_leg)), tables)
+        tuple(sorted(s.name for s in constants if not builder.stage_of(s).per_leg)),
+        tables,
+    )
 
 
 def _closure_of(assignments: list[Assignment], wanted: set[Any]) -> set[Any]:
@@ -291,35 +334,61 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
     wide = 6 if derivation.coordinates.transmits_moments else 3
     closures = {
         f"{stem}_{t.name}": (len(t.indices), rows * (t.unknowns if stem == "jacobian" else 1))
-        for t in derivation.leg_types if not t.is_closed
+        for t in derivation.leg_types
+        if not t.is_closed
         for rows in ((2 if derivation.coordinates.planar else 3) + t.transmitted,)
         for stem in ("gap", "jacobian")
     }
     return {
-        **closures, "M": (n["NV"], n["NV"]), "Z": (n["NV"],), "H": (n["NV"], n["NU"]),
-        "Hk": (n["NV"], n["NC"]), "required": (n["NV"],), "q": (n["NJ"],), "qd": (n["NJ"],),
-        "qdd": (n["NJ"],), "leg_force": (legs, wide), "drive": (n["NU"], wide),
-        "constraint_direction": (n["NC"], wide), "potential": (1,), "constraints": (n["NC"],),
+        **closures,
+        "M": (n["NV"], n["NV"]),
+        "Z": (n["NV"],),
+        "H": (n["NV"], n["NU"]),
+        "Hk": (n["NV"], n["NC"]),
+        "required": (n["NV"],),
+        "q": (n["NJ"],),
+        "qd": (n["NJ"],),
+        "qdd": (n["NJ"],),
+        "leg_force": (legs, wide),
+        "drive": (n["NU"], wide),
+        "constraint_direction": (n["NC"], wide),
+        "potential": (1,),
+        "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
     }
 
 
-def _blocks(statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any],
-            leg_types: list[str], *, parameters: bool = False) -> tuple[Block, ...]:
-    kinds = (Kind.PARAMETER, Kind.PARAMETER_LEG, Kind.PARAMETER_TOTAL) if parameters else (
-        Kind.STATE, Kind.STATE_LEG, Kind.TOTAL)
+def _blocks(
+    statements: list[Statement],
+    stores: list[tuple[Stage, Store]],
+    guards: list[Any],
+    leg_types: list[str],
+    *,
+    parameters: bool = False,
+) -> tuple[Block, ...]:
+    kinds = (
+        (Kind.PARAMETER, Kind.PARAMETER_LEG, Kind.PARAMETER_TOTAL)
+        if parameters
+        else (Kind.STATE, Kind.STATE_LEG, Kind.TOTAL)
+    )
     stages = [Stage(kinds[0]), *(Stage(kinds[1], t) for t in leg_types), Stage(kinds[2])]
     blocks = []
     for stage in stages:
         own = [s for s in statements if s.stage == stage and not s.total_of]
-        sums = tuple((s.target, s.expr) for s in statements
-                     if s.total_of and s.total_of == stage.leg_type)
-        blocks.append(Block(
-            stage.leg_type,
-            tuple(Assignment(s.target, s.expr, s.equation) for s in own),
-            tuple(Check(g.trouble, g.value, g.scale, g.power, g.equation)
-                  for g in guards if g.stage == stage),
-            sums,
-            tuple(store for at, store in stores if at == stage),
-        ))
+        sums = tuple(
+            (s.target, s.expr) for s in statements if s.total_of and s.total_of == stage.leg_type
+        )
+        blocks.append(
+            Block(
+                stage.leg_type,
+                tuple(Assignment(s.target, s.expr, s.equation) for s in own),
+                tuple(
+                    Check(g.trouble, g.value, g.scale, g.power, g.equation)
+                    for g in guards
+                    if g.stage == stage
+                ),
+                sums,
+                tuple(store for at, store in stores if at == stage),
+            )
+        )
     return tuple(b for b in blocks if b.assignments or b.stores or b.sums or b.checks)

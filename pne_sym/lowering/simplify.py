@@ -14,7 +14,9 @@ _LONGEST = 14  # operations in one statement: beyond it lines get hard to read
 
 
 def inline_single_use(
-    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any],
+    statements: list[Statement],
+    stores: list[tuple[Stage, Store]],
+    guards: list[Any],
 ) -> list[Statement]:
     """Put unnamed values that are used once into the statement that uses them."""
     uses: dict[Any, int] = {}
@@ -45,8 +47,17 @@ def inline_single_use(
         ):
             inlined[statement.target] = expr
             continue
-        kept.append(Statement(statement.target, expr, statement.stage, statement.equation,
-                              statement.total_of, statement.is_named, statement.hint))
+        kept.append(
+            Statement(
+                statement.target,
+                expr,
+                statement.stage,
+                statement.equation,
+                statement.total_of,
+                statement.is_named,
+                statement.hint,
+            )
+        )
     return kept
 
 

@@ -23,8 +23,9 @@ class SingularPattern(ValueError):
 Scale = Callable[[int, int], Atom]
 
 
-def solve(b: Builder, matrix: Rows, right: Sequence[Atom], scale: Scale,
-          hints: Sequence[str]) -> list[Atom]:
+def solve(
+    b: Builder, matrix: Rows, right: Sequence[Atom], scale: Scale, hints: Sequence[str]
+) -> list[Atom]:
     """Solve matrix x = right; rows that are zero throughout are left out.
 
     Args:
@@ -47,8 +48,9 @@ def solve(b: Builder, matrix: Rows, right: Sequence[Atom], scale: Scale,
 
 
 class _System:
-    def __init__(self, b: Builder, matrix: Rows, right: list[Atom], scale: Scale,
-                 hints: Sequence[str]) -> None:
+    def __init__(
+        self, b: Builder, matrix: Rows, right: list[Atom], scale: Scale, hints: Sequence[str]
+    ) -> None:
         self.b, self.m, self.r, self.scale, self.hints = b, matrix, right, scale, hints
         self.x: dict[int, Atom] = {}
         self.minors: dict[Any, Atom] = {}
@@ -97,8 +99,9 @@ class _System:
         for j in columns:
             terms = []
             for i in rows:
-                minor = self._minor(tuple(k for k in rows if k != i),
-                                    tuple(k for k in columns if k != j))
+                minor = self._minor(
+                    tuple(k for k in rows if k != i), tuple(k for k in columns if k != j)
+                )
                 sign = (-1) ** (rows.index(i) + columns.index(j))
                 terms.append(sign * b.mul(minor, right[i]))
             self.x[j] = b.divide(b.add(terms), determinant, self.hints[j])

@@ -32,14 +32,21 @@ def branch_signs(
     rows = []
     pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
     for index, leg in zip(g.leg_type.indices, g.leg_type.legs, strict=True):
-        q = np.array(manipulator.home.q[starts[index]:starts[index + 1]])
-        rows.append(_signs_of_leg(manipulator.name, index, leg, q, g, inverse, book,
-                                   pose.R))
+        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
+        rows.append(_signs_of_leg(manipulator.name, index, leg, q, g, inverse, book, pose.R))
     return [tuple(row[k] for row in rows) for k in range(len(inverse.branches))]
 
 
-def _signs_of_leg(name: str, index: int, leg: Leg, q: Array, g: LegGeometry, inverse: InverseKinematics,
-                  book: Book, base_R_platform: Array) -> list[int]:
+def _signs_of_leg(
+    name: str,
+    index: int,
+    leg: Leg,
+    q: Array,
+    g: LegGeometry,
+    inverse: InverseKinematics,
+    book: Book,
+    base_R_platform: Array,
+) -> list[int]:
     values = _values_at(leg, q, g, g.leg_type.indices.index(index), base_R_platform)
     for j in range(1, g.count + 1):
         values[g.name(f"q_{j}")] = q[j - 1]
@@ -51,7 +58,8 @@ def _signs_of_leg(name: str, index: int, leg: Leg, q: Array, g: LegGeometry, inv
         for symbol in branches.keys() - signs.keys():
             if symbol in getattr(equation.rhs, "free_symbols", ()):
                 signs[symbol] = _sign(
-                    name, index, branches[symbol].joint, evaluate(branches[symbol].root, values))
+                    name, index, branches[symbol].joint, evaluate(branches[symbol].root, values)
+                )
                 values[symbol.name] = float(signs[symbol])
         if equation.name not in values:
             values[equation.name] = evaluate(equation.rhs, values)
@@ -61,14 +69,17 @@ def _signs_of_leg(name: str, index: int, leg: Leg, q: Array, g: LegGeometry, inv
 def _sign(name: str, index: int, joint: int, root: float) -> int:
     if not np.isfinite(root) or abs(root) < 1e-12:
         raise SpecError(
-            name, f"legs[{index}].joints[{joint - 1}]",
+            name,
+            f"legs[{index}].joints[{joint - 1}]",
             "two solutions of the inverse kinematics meet at home",
-            "a home position off that singularity")
+            "a home position off that singularity",
+        )
     return 1 if root > 0 else -1
 
 
-def _values_at(leg: Leg, q: Array, g: LegGeometry, row: int,
-               base_R_platform: Array) -> dict[str, Any]:
+def _values_at(
+    leg: Leg, q: Array, g: LegGeometry, row: int, base_R_platform: Array
+) -> dict[str, Any]:
     """All given vectors of a leg at displacements q, in leg axes (base point at the origin)."""
     spec = [np.eye(3)]
     origin = np.zeros(3)
@@ -95,14 +106,16 @@ def _values_at(leg: Leg, q: Array, g: LegGeometry, row: int,
         end = leg.platform_joint
         values[link.name] = spec[-1] @ np.array(end.axis_link or (0.0, 0.0, 0.0))
         values[platform.name] = (
-            np.array(leg.base_frame).T @ base_R_platform @ np.array(end.axis_platform or (0.0,) * 3))
+            np.array(leg.base_frame).T @ base_R_platform @ np.array(end.axis_platform or (0.0,) * 3)
+        )
     values[g.name("size")] = 1.0
     _frame_vectors(values, leg, q, g, spec, row)
     return values
 
 
-def _frame_vectors(values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry,
-                   spec: list[Array], row: int) -> None:
+def _frame_vectors(
+    values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry, spec: list[Array], row: int
+) -> None:
     """Reference directions, canonical axes, cosines and sines of the joints."""
     for j in range(1, g.count + 1):
         if not g.turns(j):

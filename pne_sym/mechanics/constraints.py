@@ -50,46 +50,90 @@ def wrenches_left_out(
     """
     if missing != 1 or len(joints) != 3:
         raise SpecError(
-            g.leg_type.name, "platform_joint",
+            g.leg_type.name,
+            "platform_joint",
             f"{len(joints)} freedoms and {len(motion.n)} transmitted moments leave out "
-            f"{missing} directions", "legs that leave out one direction, with three joints")
+            f"{missing} directions",
+            "legs that leave out one direction, with three joints",
+        )
     (n,) = motion.n
-    across = [Cross(motion.v[joints[(k + 1) % 3]], motion.v[joints[(k + 2) % 3]])
-              for k in range(3)]
+    across = [Cross(motion.v[joints[(k + 1) % 3]], motion.v[joints[(k + 2) % 3]]) for k in range(3)]
     parts = [-Dot(g.e[j], n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
     volume = Dot(motion.v[joints[0]], across[0])
     if g.pure_moment:
         return [_per_unit_moment(book, g, vector_sum(parts), volume, frame)]
     direction = book.define(
-        g.name("f_c_part"), vector_sum(parts), r"\mathbf f'_c",
-        "force that with the moment does no work along the leg's freedoms", Law.GEOMETRY,
-        body=frame, unit="m^2")
-    length = book.define(g.name("f_c_size"), norm(direction), r"\lVert\mathbf f'_c\rVert",
-                         "its size", Law.GEOMETRY, unit="m^2",
-                         conditions=(Condition(Trouble.SINGULAR, Dot(direction, direction),
-                                               g.size**4, 2),))
-    force = book.define(g.name("n_c"), direction / length, r"\mathbf n_c",
-                        "unit force that the leg's freedoms leave out", Law.GEOMETRY, body=frame,
-                        reference="Eq. 35")
-    amount = book.define(g.name("mu_c"), volume / length, r"\mu_c",
-                         "moment that goes with it", Law.GEOMETRY, unit="m", reference="Eq. 35")
+        g.name("f_c_part"),
+        vector_sum(parts),
+        r"\mathbf f'_c",
+        "force that with the moment does no work along the leg's freedoms",
+        Law.GEOMETRY,
+        body=frame,
+        unit="m^2",
+    )
+    length = book.define(
+        g.name("f_c_size"),
+        norm(direction),
+        r"\lVert\mathbf f'_c\rVert",
+        "its size",
+        Law.GEOMETRY,
+        unit="m^2",
+        conditions=(Condition(Trouble.SINGULAR, Dot(direction, direction), g.size**4, 2),),
+    )
+    force = book.define(
+        g.name("n_c"),
+        direction / length,
+        r"\mathbf n_c",
+        "unit force that the leg's freedoms leave out",
+        Law.GEOMETRY,
+        body=frame,
+        reference="Eq. 35",
+    )
+    amount = book.define(
+        g.name("mu_c"),
+        volume / length,
+        r"\mu_c",
+        "moment that goes with it",
+        Law.GEOMETRY,
+        unit="m",
+        reference="Eq. 35",
+    )
     return [(force, [amount])]
 
 
-def _per_unit_moment(book: Book, g: LegGeometry, force: Vector, volume: Any,
-                     frame: str) -> tuple[Vector, list[Any]]:
+def _per_unit_moment(
+    book: Book, g: LegGeometry, force: Vector, volume: Any, frame: str
+) -> tuple[Vector, list[Any]]:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
     condition = Condition(Trouble.SINGULAR, volume, g.size**3)
-    scale = book.define(g.name("volume_c"), volume, r"\Delta_c",
-                        "triple product of the velocity vectors", Law.GEOMETRY, unit="m^3",
-                        conditions=(condition,))
+    scale = book.define(
+        g.name("volume_c"),
+        volume,
+        r"\Delta_c",
+        "triple product of the velocity vectors",
+        Law.GEOMETRY,
+        unit="m^3",
+        conditions=(condition,),
+    )
     direction: Vector = book.define(
-        g.name("n_c"), force / scale, r"\mathbf n_c",
+        g.name("n_c"),
+        force / scale,
+        r"\mathbf n_c",
         "force part, zero on the manifold, of the unit moment that the leg's freedoms leave out",
-        Law.GEOMETRY, body=frame, unit="1/m", reference="Eq. 35")
-    amount = book.define(g.name("mu_c"), sp.S.One, r"\mu_c", "moment that goes with it",
-                         Law.GEOMETRY, reference="Eq. 35")
+        Law.GEOMETRY,
+        body=frame,
+        unit="1/m",
+        reference="Eq. 35",
+    )
+    amount = book.define(
+        g.name("mu_c"),
+        sp.S.One,
+        r"\mu_c",
+        "moment that goes with it",
+        Law.GEOMETRY,
+        reference="Eq. 35",
+    )
     return direction, [amount]
 
 
@@ -101,13 +145,16 @@ def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
     pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
     for index in g.leg_type.indices:
         leg = manipulator.legs[index]
-        q = np.array(manipulator.home.q[starts[index]:starts[index + 1]])
+        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
         axes, last = axes_at(leg, q)
         link = last @ np.array(leg.platform_joint.axis_link)
         platform = np.array(leg.base_frame).T @ pose.R @ np.array(leg.platform_joint.axis_platform)
         n = np.cross(link, platform)
-        along = [abs(e @ n) for joint, e in zip(leg.joints, axes, strict=True)
-                 if joint.kind is not JointKind.PRISMATIC]
+        along = [
+            abs(e @ n)
+            for joint, e in zip(leg.joints, axes, strict=True)
+            if joint.kind is not JointKind.PRISMATIC
+        ]
         if max(along) > 1e-6:
             return False
     return True
@@ -125,7 +172,12 @@ def axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:
 
 def _unit(book: Book, g: LegGeometry, stem: str, vector: Vector) -> Vector:
     unit: Vector = book.define(
-        g.name(stem), vector / norm(vector), r"\mathbf n_c",
-        "unit vector that the leg's freedoms leave out", Law.GEOMETRY,
-        body=g.frame("axes", g.group[g.count]), reference="Eq. 35")
+        g.name(stem),
+        vector / norm(vector),
+        r"\mathbf n_c",
+        "unit vector that the leg's freedoms leave out",
+        Law.GEOMETRY,
+        body=g.frame("axes", g.group[g.count]),
+        reference="Eq. 35",
+    )
     return unit

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import sympy as sp
+
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
@@ -46,13 +48,21 @@ def derive(manipulator: Manipulator) -> Derivation:
 
 def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) -> Coordinates:
     """Names and order of what goes in and comes out."""
-    joints = [(i, j, joint) for i, leg in enumerate(manipulator.legs)
-              for j, joint in enumerate(leg.joints)]
+    joints = [
+        (i, j, joint)
+        for i, leg in enumerate(manipulator.legs)
+        for j, joint in enumerate(leg.joints)
+    ]
     constraints = sorted(
-        index for leg in legs for index in leg.g.leg_type.indices for _ in leg.motion.normals)
+        index for leg in legs for index in leg.g.leg_type.indices for _ in leg.motion.normals
+    )
     return Coordinates(
-        space=manipulator.space.value, pose=space.pose_names, rates=space.rate_names,
-        wrench=space.wrench_names, components=space.components, planar=space.planar,
+        space=manipulator.space.value,
+        pose=space.pose_names,
+        rates=space.rate_names,
+        wrench=space.wrench_names,
+        components=space.components,
+        planar=space.planar,
         joints=tuple((i, j) for i, j, _ in joints),
         actuators=tuple((i, j) for i, j, joint in joints if joint.actuated),
         extras=tuple((i, j) for i, j, joint in joints if joint.extra),
@@ -64,8 +74,12 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
 
 
 def _derive_leg(
-    book: Book, manipulator: Manipulator, space: TaskSpace, platform: PlatformMotion,
-    leg_type: LegType, suffix: str,
+    book: Book,
+    manipulator: Manipulator,
+    space: TaskSpace,
+    platform: PlatformMotion,
+    leg_type: LegType,
+    suffix: str,
 ) -> tuple[Leg, MotionWriter]:
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", _GEOMETRY, prefix)
@@ -74,14 +88,26 @@ def _derive_leg(
     bodies = introduce_bodies(book, g, space.planar)
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
     S = book.define(
-        g.name("S"), vector_sum((platform.t, g.platform_point, -g.base_point)), r"\mathbf S",
-        "from the base point to the connection point", Law.GEOMETRY, unit="m", body="base",
-        reference="Sec. 2.5, step 1.1")
+        g.name("S"),
+        vector_sum((platform.t, g.platform_point, -g.base_point)),
+        r"\mathbf S",
+        "from the base point to the connection point",
+        Law.GEOMETRY,
+        unit="m",
+        body="base",
+        reference="Sec. 2.5, step 1.1",
+    )
     x = S - g.offset[1]
     if not isinstance(x, VectorSymbol):
-        x = book.define(g.name("x_1"), x, r"\mathbf x_{1}",
-                        "from the origin of joint 1 to the connection point", Law.GEOMETRY,
-                        unit="m", body=g.frame("axes", 0))
+        x = book.define(
+            g.name("x_1"),
+            x,
+            r"\mathbf x_{1}",
+            "from the origin of joint 1 to the connection point",
+            Law.GEOMETRY,
+            unit="m",
+            body=g.frame("axes", 0),
+        )
     freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
     constrained = len(freedoms) < (2 if space.planar else 3) + len(g.pairs)
     flat = constrained and not space.planar and not g.pairs
@@ -92,7 +118,9 @@ def _derive_leg(
         book.reset(before)
         inverse = given_displacements(book, g, inverse.reasons)
     inverse.S = S
-    for branch, signs in zip(inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True):
+    for branch, signs in zip(
+        inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True
+    ):
         book.parameters.add_branch(branch.symbol.name, leg_type.name, signs)
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
     kinematics = MotionWriter(book, g, platform, space, inverse)
@@ -109,13 +137,19 @@ def _derive_leg(
 def _info(leg_type: LegType, inverse: InverseKinematics, transmitted: int) -> LegTypeInfo:
     count = len(leg_type.model.joints)
     return LegTypeInfo(
-        leg_type.name, leg_type.architecture, leg_type.indices, count,
+        leg_type.name,
+        leg_type.architecture,
+        leg_type.indices,
+        count,
         tuple(inverse.methods[j] for j in range(1, count + 1)),
-        tuple(sorted(inverse.reasons.items())), transmitted)
+        tuple(sorted(inverse.reasons.items())),
+        transmitted,
+    )
 
 
-def _joint_outputs(book: Book, manipulator: Manipulator, leg: Leg,
-                   inverse: InverseKinematics) -> None:
+def _joint_outputs(
+    book: Book, manipulator: Manipulator, leg: Leg, inverse: InverseKinematics
+) -> None:
     """Displacements, rates and accelerations of the joints; the leg's force."""
     starts, total = [], 0
     for member in manipulator.legs:
@@ -124,26 +158,48 @@ def _joint_outputs(book: Book, manipulator: Manipulator, leg: Leg,
     indices = leg.g.leg_type.indices
     for j in range(1, leg.g.count + 1):
         rows = tuple(starts[i] + j - 1 for i in indices)
-        for array, value in (("q", inverse.q.get(j)), ("qd", leg.motion.qd[j]),
-                             ("qdd", leg.motion.qdd[j])):
+        for array, value in (
+            ("q", inverse.q.get(j)),
+            ("qd", leg.motion.qd[j]),
+            ("qdd", leg.motion.qdd[j]),
+        ):
             if value is not None:
                 book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))
-    book.outputs.append(Output(
-        "leg_force", leg.dynamics.true_force, ((0, 0),), tuple((c, c) for c in range(3)),
-        leg.name, tuple(indices)))
+    book.outputs.append(
+        Output(
+            "leg_force",
+            leg.dynamics.true_force,
+            ((0, 0),),
+            tuple((c, c) for c in range(3)),
+            leg.name,
+            tuple(indices),
+        )
+    )
     if leg.dynamics.moment != ZeroVector:
-        book.outputs.append(Output(
-            "leg_force", leg.dynamics.moment, ((0, 0),), tuple((c, c + 3) for c in range(3)),
-            leg.name, tuple(indices)))
+        book.outputs.append(
+            Output(
+                "leg_force",
+                leg.dynamics.moment,
+                ((0, 0),),
+                tuple((c, c + 3) for c in range(3)),
+                leg.name,
+                tuple(indices),
+            )
+        )
 
 
 def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None:
     """Misfit of the loop closure and its derivative by the joint displacements."""
     g, motion, name = leg.g, leg.motion, leg.name
     gap = book.define(
-        g.name("gap"), motion.gap, r"\mathbf g",
-        "from the connection point as the links reach it to the platform's", Law.LOOP_CLOSURE,
-        unit="m", body=frame)
+        g.name("gap"),
+        motion.gap,
+        r"\mathbf g",
+        "from the connection point as the links reach it to the platform's",
+        Law.LOOP_CLOSURE,
+        unit="m",
+        body=frame,
+    )
     joints = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
     axes = range(2 if space.planar else 3)
     rows = tuple(range(g.leg_type.count))
@@ -162,16 +218,22 @@ def _closure_outputs(book: Book, leg: Leg, frame: str, space: TaskSpace) -> None
                 put(f"jacobian_{name}", Dot(g.e[j], n), ((0, i * width + k),))
 
 
-def _potential(book: Book, platform: PlatformMotion, writer: PlatformWriter, legs: list[Leg],
-               kinematics: list[MotionWriter]) -> None:
+def _potential(
+    book: Book,
+    platform: PlatformMotion,
+    writer: PlatformWriter,
+    legs: list[Leg],
+    kinematics: list[MotionWriter],
+) -> None:
     """Potential energy, zero at the base origin."""
     book.chapter("V", "Potential energy", "Weight times height, zero at the base origin.")
     total: Any = -Dot(platform.gravity, writer.mass * platform.t + writer.moment)
     for leg, motion in zip(legs, kinematics, strict=True):
-        g, terms = leg.g, []
+        g = leg.g
+        terms: list[Any] = []
         for body in leg.dynamics.bodies:
             if body.at_tip:
-                mass = body.mass if leg.motion.normals else 0
+                mass = body.mass if leg.motion.normals else sp.S.Zero
                 place = vector_sum((platform.t, g.platform_point))
             else:
                 mass = body.mass

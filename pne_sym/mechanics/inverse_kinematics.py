@@ -66,8 +66,14 @@ class InverseKinematics:
         return not self.reasons
 
 
-def invert(book: Book, g: LegGeometry, x: Vector, normal: Vector | None = None,
-           *, constrained: bool = False) -> InverseKinematics:
+def invert(
+    book: Book,
+    g: LegGeometry,
+    x: Vector,
+    normal: Vector | None = None,
+    *,
+    constrained: bool = False,
+) -> InverseKinematics:
     """Write the inverse kinematics of a leg.
 
     Args:
@@ -95,9 +101,14 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
             solver._given(j, ZeroVector)
             continue
         name = g.name(f"q_{j}")
-        book.note_quantity(Quantity(
-            name, f"q_{{{j}}}", f"displacement of joint {j}, by iteration on the loop closure",
-            "rad" if g.turns(j) else "m"))
+        book.note_quantity(
+            Quantity(
+                name,
+                f"q_{{{j}}}",
+                f"displacement of joint {j}, by iteration on the loop closure",
+                "rad" if g.turns(j) else "m",
+            )
+        )
         solver.q[j] = sp.Symbol(name, real=True)
         solver.methods[j] = "numeric"
         if g.turns(j):
@@ -106,8 +117,9 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
 
 
 class _Solver:
-    def __init__(self, book: Book, g: LegGeometry, normal: Vector | None, *,
-                 constrained: bool) -> None:
+    def __init__(
+        self, book: Book, g: LegGeometry, normal: Vector | None, *, constrained: bool
+    ) -> None:
         self.book = book
         self.g = g
         self.normal = normal
@@ -138,15 +150,22 @@ class _Solver:
         x = x - g.offset[j + 1]
         if j < g.count and not isinstance(x, VectorSymbol):
             x = self.book.define(
-                g.name(f"x_{j + 1}"), x, rf"\mathbf x_{{{j + 1}}}",
-                f"from the origin of joint {j + 1} to the connection point", Law.GEOMETRY,
-                unit="m", body=g.frame("axes", g.group[j]),
+                g.name(f"x_{j + 1}"),
+                x,
+                rf"\mathbf x_{{{j + 1}}}",
+                f"from the origin of joint {j + 1} to the connection point",
+                Law.GEOMETRY,
+                unit="m",
+                body=g.frame("axes", g.group[j]),
             )
         return x
 
     def _later(self, j: int) -> list[int]:
-        return [k for k in range(j + 1, self.g.count + 1)
-                if not self.g.is_extra(k) and not self.g.is_unseen(k)]
+        return [
+            k
+            for k in range(j + 1, self.g.count + 1)
+            if not self.g.is_extra(k) and not self.g.is_unseen(k)
+        ]
 
     def _invariant(self, j: int) -> tuple[str, Vector, Any] | None:
         """(method, vector u fixed in link j, value of u . x) for joint j."""
@@ -155,8 +174,10 @@ class _Solver:
         sliding = [k for k in later if g.acts_as_slide(k)]
         if any(k in g.pitch for k in turning):
             return None
-        if turning and all(g.parallel(turning[0], k) for k in turning) and all(
-            g.perpendicular(turning[0], k) for k in sliding
+        if (
+            turning
+            and all(g.parallel(turning[0], k) for k in turning)
+            and all(g.perpendicular(turning[0], k) for k in sliding)
         ):
             if self._useful(j, turning[0]):
                 return "linear", g.e[turning[0]], self._constant(j, turning[0])
@@ -205,9 +226,14 @@ class _Solver:
         if any(a != ZeroVector for a in between) or turning != list(range(first, g.count + 1)):
             return None
         centre = vector_sum(
-            [*(g.offset[i] for i in range(j + 1, first + 1)),
-             *(self.q[i] * g.pitch.get(i, 1) * g.e[i] for i in range(j + 1, first)
-               if not g.turns(i) or i in g.pitch)]
+            [
+                *(g.offset[i] for i in range(j + 1, first + 1)),
+                *(
+                    self.q[i] * g.pitch.get(i, 1) * g.e[i]
+                    for i in range(j + 1, first)
+                    if not g.turns(i) or i in g.pitch
+                ),
+            ]
         )
         return "sphere", centre, g.offset[g.count + 1]
 
@@ -223,17 +249,31 @@ class _Solver:
         self.methods[j] = method
         if method == "sphere":
             squared = (Dot(x, x) + Dot(u, u) - Dot(value, value)) / 2
-            value = self._scalar(f"Kd_{j}", squared, f"K^d_{{{j}}}",
-                                 f"projection on the centre's direction, from the distance "
-                                 f"fixed by the joints beyond joint {j}", "m^2")
+            value = self._scalar(
+                f"Kd_{j}",
+                squared,
+                f"K^d_{{{j}}}",
+                f"projection on the centre's direction, from the distance "
+                f"fixed by the joints beyond joint {j}",
+                "m^2",
+            )
         return self._projection(j, x, u, value, method)
 
-    def _scalar(self, stem: str, rhs: Any, latex: str, title: str, unit: str = "m",
-                law: Law = Law.LOOP_CLOSURE, conditions: tuple[Condition, ...] = ()) -> Any:
+    def _scalar(
+        self,
+        stem: str,
+        rhs: Any,
+        latex: str,
+        title: str,
+        unit: str = "m",
+        law: Law = Law.LOOP_CLOSURE,
+        conditions: tuple[Condition, ...] = (),
+    ) -> Any:
         if rhs == 0 or isinstance(rhs, sp.Symbol):
             return rhs
-        return self.book.define(self.g.name(stem), rhs, latex, title, law, unit=unit,
-                                conditions=conditions)
+        return self.book.define(
+            self.g.name(stem), rhs, latex, title, law, unit=unit, conditions=conditions
+        )
 
     def _turn_axes(self, j: int) -> tuple[Vector, Vector, Vector]:
         """Axes of the turn frame of joint j (fixed in link j-1)."""
@@ -242,13 +282,28 @@ class _Solver:
         axes = []
         for stem, latex, components, what in (
             ("ref", r"\hat{\mathbf x}", unit, "reference direction of the angle"),
-            ("across", r"\hat{\mathbf y}", (unit[1], unit[0], unit[1]), "across the reference direction"),
+            (
+                "across",
+                r"\hat{\mathbf y}",
+                (unit[1], unit[0], unit[1]),
+                "across the reference direction",
+            ),
         ):
             name = self.g.name(f"{stem}_{j}")
             symbol = VectorSymbol(name)
-            self.book.give(symbol, turn, components, Quantity(
-                name, rf"{latex}^0_{{{j}}}", f"{what} of joint {j}, fixed in link {j - 1}", "-",
-                turn, parameter=True))
+            self.book.give(
+                symbol,
+                turn,
+                components,
+                Quantity(
+                    name,
+                    rf"{latex}^0_{{{j}}}",
+                    f"{what} of joint {j}, fixed in link {j - 1}",
+                    "-",
+                    turn,
+                    parameter=True,
+                ),
+            )
             axes.append(symbol)
         return axes[0], axes[1], self.g.e[j]
 
@@ -257,13 +312,24 @@ class _Solver:
         frame = self.g.frame("axes", j)
         axes = []
         for stem, latex, components in (
-            ("link_x", r"\hat{\mathbf x}", (1, 0, 0)), ("link_y", r"\hat{\mathbf y}", (0, 1, 0)),
+            ("link_x", r"\hat{\mathbf x}", (1, 0, 0)),
+            ("link_y", r"\hat{\mathbf y}", (0, 1, 0)),
         ):
             name = self.g.name(f"{stem}_{j}")
             symbol = VectorSymbol(name)
-            self.book.give(symbol, frame, tuple(map(sp.Integer, components)), Quantity(
-                name, rf"{latex}_{{{j}}}", f"direction across axis {j}, fixed in link {j}", "-",
-                frame, parameter=True))
+            self.book.give(
+                symbol,
+                frame,
+                tuple(map(sp.Integer, components)),
+                Quantity(
+                    name,
+                    rf"{latex}_{{{j}}}",
+                    f"direction across axis {j}, fixed in link {j}",
+                    "-",
+                    frame,
+                    parameter=True,
+                ),
+            )
             axes.append(symbol)
         return axes[0], axes[1]
 
@@ -272,60 +338,97 @@ class _Solver:
         g, e = self.g, self.g.e[j]
         reference, across, _ = self._turn_axes(j)
         n, m = self._link_axes(j)
-        A = self._scalar(f"px_{j}", Dot(reference, x), f"x_{{{j}}}",
-                         "component along the reference direction")
-        B = self._scalar(f"py_{j}", Dot(across, x), f"y_{{{j}}}",
-                         "component across the reference direction")
+        A = self._scalar(
+            f"px_{j}", Dot(reference, x), f"x_{{{j}}}", "component along the reference direction"
+        )
+        B = self._scalar(
+            f"py_{j}", Dot(across, x), f"y_{{{j}}}", "component across the reference direction"
+        )
         pattern = self._pattern(j, method, u)
         u_n = self._scalar_parameter(f"un_{j}", Dot(u, n)) if pattern[0] is None else pattern[0]
         u_m = self._scalar_parameter(f"um_{j}", Dot(u, m)) if pattern[1] is None else pattern[1]
-        K = self._scalar(f"Kc_{j}", u_n * A + u_m * B, f"K^c_{{{j}}}",
-                         f"factor of cos in the equation of joint {j}")
-        N = self._scalar(f"Ks_{j}", u_n * B - u_m * A, f"K^s_{{{j}}}",
-                         f"factor of sin in the equation of joint {j}")
+        K = self._scalar(
+            f"Kc_{j}",
+            u_n * A + u_m * B,
+            f"K^c_{{{j}}}",
+            f"factor of cos in the equation of joint {j}",
+        )
+        N = self._scalar(
+            f"Ks_{j}",
+            u_n * B - u_m * A,
+            f"K^s_{{{j}}}",
+            f"factor of sin in the equation of joint {j}",
+        )
         along = sp.S.Zero if pattern[2] == 0 else Dot(u, e) * Dot(e, x)
-        C = self._scalar(f"Kr_{j}", value - along, f"K^r_{{{j}}}",
-                         f"right-hand side: K cos + N sin = C for joint {j}")
+        C = self._scalar(
+            f"Kr_{j}",
+            value - along,
+            f"K^r_{{{j}}}",
+            f"right-hand side: K cos + N sin = C for joint {j}",
+        )
         unit, scale = {
-            "linear": ("m^2", g.size**2), "sphere": ("m^4", g.size**4),
+            "linear": ("m^2", g.size**2),
+            "sphere": ("m^4", g.size**4),
             "orientation": ("-", sp.S.One),
         }[method]
         rho2 = self._scalar(
-            f"rho2_{j}", K * K + N * N, rf"\rho_{{{j}}}^2", "squared amplitude", unit,
+            f"rho2_{j}",
+            K * K + N * N,
+            rf"\rho_{{{j}}}^2",
+            "squared amplitude",
+            unit,
             conditions=(Condition(Trouble.SINGULAR, K * K + N * N, scale, 2),),
         )
         sigma = self._branch_symbol(j)
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
         self.branches.append(Branch(sigma, j, K * s - N * c))
         if C == 0:
-            root = self._scalar(f"root_{j}", sigma * sp.sqrt(rho2), rf"\rho_{{{j}}}",
-                                "amplitude, with the sign of the branch", "m")
+            root = self._scalar(
+                f"root_{j}",
+                sigma * sp.sqrt(rho2),
+                rf"\rho_{{{j}}}",
+                "amplitude, with the sign of the branch",
+                "m",
+            )
             self._cosine_sine(j, -N / root, K / root)
             x_n, x_m = u_m * root, -u_n * root
         else:
             discriminant = self._scalar(
-                f"disc_{j}", rho2 - C**2, rf"\Delta_{{{j}}}", "discriminant", unit,
-                conditions=(Condition(Trouble.UNREACHABLE, rho2 - C**2),))
-            root = self._scalar(f"root_{j}", sigma * sp.sqrt(discriminant), rf"r_{{{j}}}",
-                                "root, with the sign of the branch", "m")
+                f"disc_{j}",
+                rho2 - C**2,
+                rf"\Delta_{{{j}}}",
+                "discriminant",
+                unit,
+                conditions=(Condition(Trouble.UNREACHABLE, rho2 - C**2),),
+            )
+            root = self._scalar(
+                f"root_{j}",
+                sigma * sp.sqrt(discriminant),
+                rf"r_{{{j}}}",
+                "root, with the sign of the branch",
+                "m",
+            )
             self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
             x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._scalar_parameter(f"uu_{j}", u_n**2 + u_m**2)
         return self.book.define(
-            g.name(f"xi_{j}"), (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
+            g.name(f"xi_{j}"),
+            (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
             rf"\boldsymbol\xi_{{{j}}}",
             f"the vector from joint {j} to the connection point, resolved along link {j}",
-            Law.LOOP_CLOSURE, unit="m", body=g.frame("axes", j),
+            Law.LOOP_CLOSURE,
+            unit="m",
+            body=g.frame("axes", j),
         )
 
     def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
         """Components of u in link j's canonical axes where the structure fixes them, else None."""
         g = self.g
         if method == "orientation":
-            return g.end_pattern  # type: ignore[return-value]
+            return g.end_pattern
         for k in range(1, g.count + 1):
             if u == g.e[k]:
-                return g.axis_pattern(j, k)  # type: ignore[return-value]
+                return g.axis_pattern(j, k)
             if u == Cross(g.e[j], g.e[k]):
                 along_x, along_y, _ = g.axis_pattern(j, k)
                 turned = None if along_y is None else -along_y
@@ -339,29 +442,53 @@ class _Solver:
         if rhs.is_number or isinstance(rhs, sp.Symbol):
             return rhs
         return self.book.define(
-            self.g.name(stem), rhs, rf"\mathrm{{{stem.split('_')[0]}}}_{{{stem.split('_')[1]}}}",
-            "constant of the link", Law.LUMPING, parameter=True)
+            self.g.name(stem),
+            rhs,
+            rf"\mathrm{{{stem.split('_', maxsplit=1)[0]}}}_{{{stem.split('_')[1]}}}",
+            "constant of the link",
+            Law.LUMPING,
+            parameter=True,
+        )
 
     def _branch_symbol(self, j: int) -> sp.Symbol:
         name = self.g.name(f"branch_{j}")
         symbol = sp.Symbol(name, real=True)
-        self.book.note_quantity(Quantity(
-            name, rf"\sigma_{{{j}}}", f"assembly branch of joint {j}: +1 or -1, as at home", "-",
-            parameter=True))
+        self.book.note_quantity(
+            Quantity(
+                name,
+                rf"\sigma_{{{j}}}",
+                f"assembly branch of joint {j}: +1 or -1, as at home",
+                "-",
+                parameter=True,
+            )
+        )
         return symbol
 
     def _cosine_sine(self, j: int, cosine: Any, sine: Any) -> None:
         book, g = self.book, self.g
-        c = book.define(g.name(f"c_{j}"), cosine, f"c_{{{j}}}",
-                        f"cosine of the angle of joint {j} from its reference direction",
-                        Law.LOOP_CLOSURE)
-        s = book.define(g.name(f"s_{j}"), sine, f"s_{{{j}}}",
-                        f"sine of the angle of joint {j} from its reference direction",
-                        Law.LOOP_CLOSURE)
+        c = book.define(
+            g.name(f"c_{j}"),
+            cosine,
+            f"c_{{{j}}}",
+            f"cosine of the angle of joint {j} from its reference direction",
+            Law.LOOP_CLOSURE,
+        )
+        s = book.define(
+            g.name(f"s_{j}"),
+            sine,
+            f"s_{{{j}}}",
+            f"sine of the angle of joint {j} from its reference direction",
+            Law.LOOP_CLOSURE,
+        )
         c0, s0 = g.zero_turn[j]
         self.q[j] = book.define(
-            g.name(f"q_{j}"), sp.atan2(s * c0 - c * s0, c * c0 + s * s0), f"q_{{{j}}}",
-            f"displacement of joint {j}", Law.LOOP_CLOSURE, unit="rad")
+            g.name(f"q_{j}"),
+            sp.atan2(s * c0 - c * s0, c * c0 + s * s0),
+            f"q_{{{j}}}",
+            f"displacement of joint {j}",
+            Law.LOOP_CLOSURE,
+            unit="rad",
+        )
 
     def _direct(self, j: int, x: Vector) -> Vector:
         """Nothing follows: the tip's offset must turn into x."""
@@ -381,11 +508,16 @@ class _Solver:
             self._cosine_sine(j, (k * A + l * B) / length2, (k * B - l * A) / length2)
             return tip
         squared = self._scalar(
-            f"rho2_{j}", (A**2 + B**2) * length2, rf"\rho_{{{j}}}^2", "squared amplitude", "m^4")
+            f"rho2_{j}", (A**2 + B**2) * length2, rf"\rho_{{{j}}}^2", "squared amplitude", "m^4"
+        )
         amplitude = self._scalar(
-            f"root_{j}", sp.sqrt(squared), rf"\rho_{{{j}}}",
-            "amplitude: off the manifold the nearest angle is taken", "m^2",
-            conditions=(Condition(Trouble.SINGULAR, squared, g.size**4, 2),))
+            f"root_{j}",
+            sp.sqrt(squared),
+            rf"\rho_{{{j}}}",
+            "amplitude: off the manifold the nearest angle is taken",
+            "m^2",
+            conditions=(Condition(Trouble.SINGULAR, squared, g.size**4, 2),),
+        )
         self._cosine_sine(j, (k * A + l * B) / amplitude, (k * B - l * A) / amplitude)
         return tip
 
@@ -406,8 +538,14 @@ class _Solver:
         self.methods[j] = "given"
         name = g.name(f"y_{j}_extra")
         q = sp.Symbol(name, real=True)
-        book.note_quantity(Quantity(name, f"y_{{{j}}}", f"extra coordinate: displacement of "
-                                    f"joint {j}", "rad" if g.turns(j) else "m"))
+        book.note_quantity(
+            Quantity(
+                name,
+                f"y_{{{j}}}",
+                f"extra coordinate: displacement of joint {j}",
+                "rad" if g.turns(j) else "m",
+            )
+        )
         if not g.turns(j):
             self.q[j] = q
             return x
@@ -423,15 +561,22 @@ class _Solver:
             ("c", sp.cos(q) * c0 - sp.sin(q) * s0, "cosine"),
             ("s", sp.sin(q) * c0 + sp.cos(q) * s0, "sine"),
         ):
-            book.define(g.name(f"{stem}_{j}"), rhs, f"{stem}_{{{j}}}",
-                        f"{what} of the angle of joint {j} from its reference direction",
-                        Law.GEOMETRY)
+            book.define(
+                g.name(f"{stem}_{j}"),
+                rhs,
+                f"{stem}_{{{j}}}",
+                f"{what} of the angle of joint {j} from its reference direction",
+                Law.GEOMETRY,
+            )
 
     def _slide(self, j: int, x: Vector) -> None:
         g, e = self.g, self.g.e[j]
         later = self._later(j)
-        found = self._invariant(j) if later else (
-            "direct", e, sp.Add(*(Dot(e, g.offset[i]) for i in range(j + 1, g.count + 2))))
+        found = (
+            self._invariant(j)
+            if later
+            else ("direct", e, sp.Add(*(Dot(e, g.offset[i]) for i in range(j + 1, g.count + 2))))
+        )
         if found is None:
             self._numeric(j)
             return
@@ -442,31 +587,51 @@ class _Solver:
         if method != "sphere":
             across = Dot(u, e) if u != e else sp.S.One
             self.q[j] = self.book.define(
-                g.name(f"q_{j}"), (Dot(u, x) - value) / (across * pitch),
-                f"q_{{{j}}}", f"displacement of joint {j}", Law.LOOP_CLOSURE, unit=unit)
+                g.name(f"q_{j}"),
+                (Dot(u, x) - value) / (across * pitch),
+                f"q_{{{j}}}",
+                f"displacement of joint {j}",
+                Law.LOOP_CLOSURE,
+                unit=unit,
+            )
             return
         centre, tip = u, value
         y = x - centre
         if not isinstance(y, VectorSymbol):
-            y = self.book.define(g.name(f"from_centre_{j}"), y, rf"\mathbf y_{{{j}}}",
-                                 "from the centre at zero displacement to the connection point",
-                                 Law.GEOMETRY, unit="m")
+            y = self.book.define(
+                g.name(f"from_centre_{j}"),
+                y,
+                rf"\mathbf y_{{{j}}}",
+                "from the centre at zero displacement to the connection point",
+                Law.GEOMETRY,
+                unit="m",
+            )
         along = self._scalar(f"px_{j}", Dot(e, y), f"x_{{{j}}}", f"component along axis {j}")
         squared = along**2 - Dot(y, y) + Dot(tip, tip)
         if self.normal is not None:  # only what lies across the direction left out can close
             squared = squared + Dot(self.normal, y) ** 2 - Dot(self.normal, tip) ** 2
         discriminant = self._scalar(
-            f"disc_{j}", squared, rf"\Delta_{{{j}}}",
-            "discriminant of the distance equation", "m^2",
-            conditions=(Condition(Trouble.UNREACHABLE, squared),))
+            f"disc_{j}",
+            squared,
+            rf"\Delta_{{{j}}}",
+            "discriminant of the distance equation",
+            "m^2",
+            conditions=(Condition(Trouble.UNREACHABLE, squared),),
+        )
         sigma = self._branch_symbol(j)
         q = sp.Symbol(g.name(f"q_{j}"), real=True)
         self.branches.append(Branch(sigma, j, q * pitch - along))
         self.q[j] = self.book.define(
-            q.name, (along + sigma * sp.sqrt(discriminant)) / pitch, f"q_{{{j}}}",
-            f"displacement of joint {j}", Law.LOOP_CLOSURE, unit=unit)
+            q.name,
+            (along + sigma * sp.sqrt(discriminant)) / pitch,
+            f"q_{{{j}}}",
+            f"displacement of joint {j}",
+            Law.LOOP_CLOSURE,
+            unit=unit,
+        )
 
     def _numeric(self, j: int, reason: str = "") -> None:
         self.methods[j] = "numeric"
         self.reasons[j] = reason or (
-            "no direction or distance is left unchanged by the joints beyond it")
+            "no direction or distance is left unchanged by the joints beyond it"
+        )

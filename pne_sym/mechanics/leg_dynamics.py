@@ -103,43 +103,107 @@ def introduce_bodies(book: Book, g: LegGeometry, planar: bool) -> list[LinkBody]
 def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> LinkBody:
     legs, frame = g.leg_type, g.frame("spec", g.group[j])
 
-    def parameter(stem: str, shape: tuple[int, ...], unit: str, meaning: str, pick: Any,
-                  zeros: tuple[int, ...] = ()) -> tuple[Any, ...]:
+    def parameter(
+        stem: str,
+        shape: tuple[int, ...],
+        unit: str,
+        meaning: str,
+        pick: Any,
+        zeros: tuple[int, ...] = (),
+    ) -> tuple[Any, ...]:
         paths = tuple(f"legs[{i}].joints[{j - 1}].link.{stem}" for i in legs.indices)
-        return book.parameters.add(ParameterField(
-            f"{legs.name}_link{j}_{stem}", legs.name, shape, unit, meaning, paths,
-            np.asarray(legs.over_legs(pick)), zeros))
+        return book.parameters.add(
+            ParameterField(
+                f"{legs.name}_link{j}_{stem}",
+                legs.name,
+                shape,
+                unit,
+                meaning,
+                paths,
+                np.asarray(legs.over_legs(pick)),
+                zeros,
+            )
+        )
 
-    (mass,) = parameter("mass", (), "kg", f"mass of link {j}", lambda leg: leg.joints[j - 1].link.mass)
+    (mass,) = parameter(
+        "mass", (), "kg", f"mass of link {j}", lambda leg: leg.joints[j - 1].link.mass
+    )
     book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", "kg", parameter=True))
-    centre = parameter("centre_of_mass", (3,), "m", f"centre of mass of link {j}, link frame",
-                       lambda leg: leg.joints[j - 1].link.centre_of_mass, (2,) if planar else ())
-    entries = parameter("inertia", (3, 3), "kg m^2",
-                        f"inertia tensor of link {j} about its centre of mass, link axes",
-                        lambda leg: leg.joints[j - 1].link.inertia)
-    rho = book.give(VectorSymbol(g.name(f"rho_{j}")), frame, centre, Quantity(
-        g.name(f"rho_{j}"), rf"\boldsymbol\rho_{{{j}}}",
-        f"origin of link {j} to its centre of mass, fixed in the link", "m", frame, parameter=True))
+    centre = parameter(
+        "centre_of_mass",
+        (3,),
+        "m",
+        f"centre of mass of link {j}, link frame",
+        lambda leg: leg.joints[j - 1].link.centre_of_mass,
+        (2,) if planar else (),
+    )
+    entries = parameter(
+        "inertia",
+        (3, 3),
+        "kg m^2",
+        f"inertia tensor of link {j} about its centre of mass, link axes",
+        lambda leg: leg.joints[j - 1].link.inertia,
+    )
+    rho = book.give(
+        VectorSymbol(g.name(f"rho_{j}")),
+        frame,
+        centre,
+        Quantity(
+            g.name(f"rho_{j}"),
+            rf"\boldsymbol\rho_{{{j}}}",
+            f"origin of link {j} to its centre of mass, fixed in the link",
+            "m",
+            frame,
+            parameter=True,
+        ),
+    )
     inertia = book.give(
-        TensorSymbol(g.name(f"I_{j}"), True), frame, symmetric_entries(entries, planar),
-        Quantity(g.name(f"I_{j}"), rf"\mathbf I_{{{j}}}",
-                 f"inertia tensor of link {j} about its centre of mass", "kg m^2", frame,
-                 parameter=True))
+        TensorSymbol(g.name(f"I_{j}"), True),
+        frame,
+        symmetric_entries(entries, planar),
+        Quantity(
+            g.name(f"I_{j}"),
+            rf"\mathbf I_{{{j}}}",
+            f"inertia tensor of link {j} about its centre of mass",
+            "kg m^2",
+            frame,
+            parameter=True,
+        ),
+    )
     arm = rho
     if at_tip and g.offset[g.count + 1] != ZeroVector:
         arm = book.define(
-            g.name(f"rho_tip_{j}"), rho - g.offset[g.count + 1], rf"\boldsymbol\rho'_{{{j}}}",
-            f"connection point to the centre of mass of link {j}", Law.LUMPING, unit="m",
-            body=frame, parameter=True)
+            g.name(f"rho_tip_{j}"),
+            rho - g.offset[g.count + 1],
+            rf"\boldsymbol\rho'_{{{j}}}",
+            f"connection point to the centre of mass of link {j}",
+            Law.LUMPING,
+            unit="m",
+            body=frame,
+            parameter=True,
+        )
     point = "the connection point" if at_tip else f"the origin of link {j}"
     moment = book.define(
-        g.name(f"h_{j}"), mass * arm, rf"\mathbf h_{{{j}}}",
-        f"first moment of link {j} about {point}", Law.LUMPING, unit="kg m", body=frame,
-        parameter=True)
+        g.name(f"h_{j}"),
+        mass * arm,
+        rf"\mathbf h_{{{j}}}",
+        f"first moment of link {j} about {point}",
+        Law.LUMPING,
+        unit="kg m",
+        body=frame,
+        parameter=True,
+    )
     tensor = book.define(
-        g.name(f"J_{j}"), inertia + mass * (Dot(arm, arm) * Identity - Outer(arm, arm)),
-        rf"\mathbf J_{{{j}}}", f"inertia tensor of link {j} about {point}", Law.LUMPING,
-        unit="kg m^2", body=frame, parameter=True, symmetric=True)
+        g.name(f"J_{j}"),
+        inertia + mass * (Dot(arm, arm) * Identity - Outer(arm, arm)),
+        rf"\mathbf J_{{{j}}}",
+        f"inertia tensor of link {j} about {point}",
+        Law.LUMPING,
+        unit="kg m^2",
+        body=frame,
+        parameter=True,
+        symmetric=True,
+    )
     return LinkBody(j, g.group[j], at_tip, mass, moment, tensor)
 
 
@@ -147,8 +211,13 @@ class DynamicsWriter:
     """Writes Newton-Euler of a leg."""
 
     def __init__(
-        self, book: Book, g: LegGeometry, platform: PlatformMotion, motion: LegMotion,
-        kinematics: MotionWriter, bodies: list[LinkBody],
+        self,
+        book: Book,
+        g: LegGeometry,
+        platform: PlatformMotion,
+        motion: LegMotion,
+        kinematics: MotionWriter,
+        bodies: list[LinkBody],
     ) -> None:
         self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
         self.write = LinearWriter(book, g, motion)
@@ -169,11 +238,18 @@ class DynamicsWriter:
         turning: Any = ZeroVector
         if body.group:
             turning = self.write.define(
-                f"phi_{j}", Cross(alpha, h) + Cross(omega, Cross(omega, h)),
+                f"phi_{j}",
+                Cross(alpha, h) + Cross(omega, Cross(omega, h)),
                 rf"\boldsymbol\varphi_{{{j}}}",
                 f"inertia force of link {j} from its turning about its reference point",
-                Law.NEWTON, unit="N", coefficient_latex=rf"\boldsymbol\Phi_{{{j}}}", body=frame,
-                forms=(tensor @ h,), rest_forms=(tensor_rest @ h,), reference="Eq. 1")
+                Law.NEWTON,
+                unit="N",
+                coefficient_latex=rf"\boldsymbol\Phi_{{{j}}}",
+                body=frame,
+                forms=(tensor @ h,),
+                rest_forms=(tensor_rest @ h,),
+                reference="Eq. 1",
+            )
         return turning, relative
 
     def _relative_acceleration(self, body: LinkBody) -> Any:
@@ -181,18 +257,31 @@ class DynamicsWriter:
         g, motion, j = self.g, self.motion, body.joint
         frame = g.frame("axes", body.group)
         if body.at_tip:
-            rhs, forms, rests = motion.S_ddot - self.p.gravity, (), ()
+            rhs = motion.S_ddot - self.p.gravity
+            forms: tuple[Any, ...] = ()
+            rests: tuple[Any, ...] = ()
         else:
-            slides = [i for i in range(1, j + 1) if g.group[i] == body.group
-                      and (not g.turns(i) or i in g.pitch)]
+            slides = [
+                i
+                for i in range(1, j + 1)
+                if g.group[i] == body.group and (not g.turns(i) or i in g.pitch)
+            ]
             value, form, rest = self.k.point_acceleration(body.group, self.k.reach(j), slides)
             rhs = value - self.p.gravity
             forms, rests = (form - self.p.gravity,), (rest - self.p.gravity,)
         return self.write.define(
-            f"acc_{j}", rhs, rf"\mathbf a_{{{j}}}",
-            f"acceleration of the reference point of link {j}, less gravity", Law.RATE,
-            unit="m/s^2", coefficient_latex=rf"\mathbf V_{{{j}}}", body=frame,
-            forms=forms, rest_forms=rests, reference="Eqs. 10, 11, 17, 18")
+            f"acc_{j}",
+            rhs,
+            rf"\mathbf a_{{{j}}}",
+            f"acceleration of the reference point of link {j}, less gravity",
+            Law.RATE,
+            unit="m/s^2",
+            coefficient_latex=rf"\mathbf V_{{{j}}}",
+            body=frame,
+            forms=forms,
+            rest_forms=rests,
+            reference="Eqs. 10, 11, 17, 18",
+        )
 
     def group_moment(self, group: int, relative: dict[int, Any]) -> Any:
         """Moment of inertia of a group's links about their own reference points (Euler)."""
@@ -204,13 +293,27 @@ class DynamicsWriter:
         J = tensor_sum(b.inertia for b in members)
         if not isinstance(J, TensorSymbol):
             J = self.book.define(
-                g.name(f"J_group_{group}"), J, rf"\mathbf J^\Sigma_{{{group}}}",
+                g.name(f"J_group_{group}"),
+                J,
+                rf"\mathbf J^\Sigma_{{{group}}}",
                 f"inertia of the links that turn with link {group}, each about its reference point",
-                Law.LUMPING, unit="kg m^2", body=frame, parameter=True, symmetric=True)
+                Law.LUMPING,
+                unit="kg m^2",
+                body=frame,
+                parameter=True,
+                symmetric=True,
+            )
         second = self.book.define(
-            g.name(f"Sigma_{group}"), self._half_trace(J) * Identity - J,
-            rf"\boldsymbol\Sigma_{{{group}}}", f"second moment of mass of the links that turn with link {group}",
-            Law.LUMPING, unit="kg m^2", body=frame, parameter=True, symmetric=True)
+            g.name(f"Sigma_{group}"),
+            self._half_trace(J) * Identity - J,
+            rf"\boldsymbol\Sigma_{{{group}}}",
+            f"second moment of mass of the links that turn with link {group}",
+            Law.LUMPING,
+            unit="kg m^2",
+            body=frame,
+            parameter=True,
+            symmetric=True,
+        )
         omega, alpha = motion.omega[group], motion.alpha[group]
         moments = [Cross(b.first_moment, relative[b.joint]) for b in members]
         tensor, tensor_rest = motion.acceleration_tensor[group]
@@ -221,32 +324,50 @@ class DynamicsWriter:
             vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
             rf"\boldsymbol\mu_{{{group}}}",
             f"inertia moment of the links that turn with link {group}, about their reference points",
-            Law.EULER, unit="N m", coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}", body=frame,
-            forms=(vector_sum((Axial(Compose(tensor, second)), *moments)),
-                   *(vector_sum((Axial(Compose(tensor, second)), *gathered[0]))
-                     for _ in gathered[:1])),
-            rest_forms=(vector_sum((Axial(Compose(tensor_rest, second)), *rest_moments)),
-                        *(vector_sum((Axial(Compose(tensor_rest, second)), *gathered[1]))
-                          for _ in gathered[:1])),
-            reference="Eq. 2")
+            Law.EULER,
+            unit="N m",
+            coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}",
+            body=frame,
+            forms=(
+                vector_sum((Axial(Compose(tensor, second)), *moments)),
+                *(vector_sum((Axial(Compose(tensor, second)), *gathered[0])) for _ in gathered[:1]),
+            ),
+            rest_forms=(
+                vector_sum((Axial(Compose(tensor_rest, second)), *rest_moments)),
+                *(
+                    vector_sum((Axial(Compose(tensor_rest, second)), *gathered[1]))
+                    for _ in gathered[:1]
+                ),
+            ),
+            reference="Eq. 2",
+        )
 
     def _gathered_moments(self, members: list[LinkBody], relative: dict[int, Any]) -> Any:
         """The moments h x (a - g) with gravity taken out once: (terms, terms at rest) or ()."""
         g, gravity = self.g, self.p.gravity
         if len(members) < 2:
             return ()
-        accelerations = {b.joint: self._without_gravity(relative[b.joint]) for b in members}
-        if any(a is None for a in accelerations.values()):
-            return ()
+        accelerations: dict[int, tuple[Any, Any]] = {}
+        for b in members:
+            found = self._without_gravity(relative[b.joint])
+            if found is None:
+                return ()
+            accelerations[b.joint] = found
         total = self.book.define(
-            g.name(f"h_group_{members[0].group}"), vector_sum(b.first_moment for b in members),
+            g.name(f"h_group_{members[0].group}"),
+            vector_sum(b.first_moment for b in members),
             rf"\mathbf h^\Sigma_{{{members[0].group}}}",
-            f"first moments of the links that turn with link {members[0].group}", Law.LUMPING,
-            unit="kg m", body=g.frame("axes", members[0].group), parameter=True)
+            f"first moments of the links that turn with link {members[0].group}",
+            Law.LUMPING,
+            unit="kg m",
+            body=g.frame("axes", members[0].group),
+            parameter=True,
+        )
         weight = -Cross(total, gravity)
         return tuple(
             [weight, *(Cross(b.first_moment, accelerations[b.joint][k]) for b in members)]
-            for k in (0, 1))
+            for k in (0, 1)
+        )
 
     def _without_gravity(self, relative: Any) -> tuple[Any, Any] | None:
         """Acceleration and its remainder, where the relative one is a named difference."""
@@ -271,14 +392,29 @@ class DynamicsWriter:
             symbol = VectorSymbol(name)
             components = [sp.Integer(int(i == k)) for i in range(3)]
             frame = self.book.notation[J.name].body or "base"
-            self.book.give(symbol, frame, components, Quantity(
-                name, rf"\mathbf{{i}}_{{{k + 1}}}", "coordinate direction", "-", frame,
-                parameter=True))
+            self.book.give(
+                symbol,
+                frame,
+                components,
+                Quantity(
+                    name,
+                    rf"\mathbf{{i}}_{{{k + 1}}}",
+                    "coordinate direction",
+                    "-",
+                    frame,
+                    parameter=True,
+                ),
+            )
             axes.append(symbol)
         return self.book.define(
-            self.g.name(f"trace_{J.name}"), sp.Add(*(Dot(a, J @ a) for a in axes)) / 2,
+            self.g.name(f"trace_{J.name}"),
+            sp.Add(*(Dot(a, J @ a) for a in axes)) / 2,
             self.book.notation[J.name].latex.replace(r"\mathbf J", "j"),
-            "half the trace of that inertia tensor", Law.LUMPING, unit="kg m^2", parameter=True)
+            "half the trace of that inertia tensor",
+            Law.LUMPING,
+            unit="kg m^2",
+            parameter=True,
+        )
 
     def run(self) -> LegDynamics:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""
@@ -304,10 +440,16 @@ class DynamicsWriter:
     def _link_force(self, body: LinkBody, turning: Any, acceleration: Any) -> Any:
         j = body.joint
         return self.write.define(
-            f"f_{j}", body.mass * acceleration + turning, rf"\mathbf f_{{{j}}}",
-            f"inertia force of link {j} less its weight", Law.NEWTON, unit="N",
-            coefficient_latex=rf"\mathbf F'_{{{j}}}", body=self.g.frame("axes", body.group),
-            reference="Eq. 1")
+            f"f_{j}",
+            body.mass * acceleration + turning,
+            rf"\mathbf f_{{{j}}}",
+            f"inertia force of link {j} less its weight",
+            Law.NEWTON,
+            unit="N",
+            coefficient_latex=rf"\mathbf F'_{{{j}}}",
+            body=self.g.frame("axes", body.group),
+            reference="Eq. 1",
+        )
 
     def _recursion(self, forces: dict[int, Any], relative: dict[int, Any]) -> dict[int, Any]:
         """Gamma_j of every joint, from the tip to the base."""
@@ -333,61 +475,104 @@ class DynamicsWriter:
             force_out, moment_out = force, moment
         return gamma
 
-    def _group_total(self, group: int, members: list[int], forces: dict[int, Any],
-                     relative: dict[int, Any], force_out: Any, moment_out: Any) -> Any:
+    def _group_total(
+        self,
+        group: int,
+        members: list[int],
+        forces: dict[int, Any],
+        relative: dict[int, Any],
+        force_out: Any,
+        moment_out: Any,
+    ) -> Any:
         """Moment about the group's origin of everything from the group outwards."""
         g = self.g
         if group == 0:
             return ZeroVector
-        terms = [self.group_moment(group, relative), moment_out,
-                 Cross(self.k.spans[group], force_out)]
+        terms = [
+            self.group_moment(group, relative),
+            moment_out,
+            Cross(self.k.spans[group], force_out),
+        ]
         terms += [Cross(self.k.reach(j), forces[j]) for j in members if j in forces]
         total = vector_sum(terms)
         if isinstance(total, VectorSymbol) or total == ZeroVector:
             return total
         return self.write.define(
-            f"N_{group}", total, rf"\mathbf N_{{{group}}}",
+            f"N_{group}",
+            total,
+            rf"\mathbf N_{{{group}}}",
             f"moment about joint {group} of the links from {group} outwards, the force at the "
-            f"connection point left out", Law.EULER, unit="N m",
-            coefficient_latex=rf"\mathbf D_{{{group}}}", body=g.frame("axes", group),
-            reference="Sec. 2.5, step 1.3")
+            f"connection point left out",
+            Law.EULER,
+            unit="N m",
+            coefficient_latex=rf"\mathbf D_{{{group}}}",
+            body=g.frame("axes", group),
+            reference="Sec. 2.5, step 1.3",
+        )
 
     def _sum_force(self, j: int, outer: Any, own: Any, frame: str) -> Any:
         total = vector_sum((own, outer))
         if isinstance(total, VectorSymbol) or total == ZeroVector:
             return total
         return self.write.define(
-            f"T_{j}", total, rf"\mathbf T_{{{j}}}",
-            f"inertia force of the links from {j} outwards, the last link left out", Law.NEWTON,
-            unit="N", coefficient_latex=rf"\mathbf C_{{{j}}}", body=frame)
+            f"T_{j}",
+            total,
+            rf"\mathbf T_{{{j}}}",
+            f"inertia force of the links from {j} outwards, the last link left out",
+            Law.NEWTON,
+            unit="N",
+            coefficient_latex=rf"\mathbf C_{{{j}}}",
+            body=frame,
+        )
 
     def _freedom(self, j: int, component: Any) -> Any:
         if component == 0:
             return sp.S.Zero
         what = {"R": "moment about", "P": "force along", "H": "moment and pitch times force along"}
         return self.write.define(
-            f"Gamma_{j}", component, rf"\Gamma_{{{j}}}",
+            f"Gamma_{j}",
+            component,
+            rf"\Gamma_{{{j}}}",
             f"{what[self.g.kind(j).value]} axis {j} of the distal links' inertia and weight",
-            Law.FREEDOM, unit="N m" if self.g.turns(j) else "N",
-            coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}", reference="Sec. 2.2, joint table")
+            Law.FREEDOM,
+            unit="N m" if self.g.turns(j) else "N",
+            coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}",
+            reference="Sec. 2.2, joint table",
+        )
 
     def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:
         """The leg's force on the platform, Eq. 3 and Eq. 4."""
         g, motion, book = self.g, self.motion, self.book
         frame = self.k.tip_frame()
         G: Any = vector_sum(gamma[j] * w for j, w in motion.w.items() if gamma[j] != 0)
-        if G != ZeroVector:
+        if ZeroVector != G:
             G = self.write.define(
-                "G", G, r"\mathbf G", "force at the connection point that balances the leg's "
-                "inertia and weight along all freedoms", Law.RECIPROCITY, unit="N",
-                coefficient_latex=r"\mathbf C", body=frame, reference="Sec. 2.3")
+                "G",
+                G,
+                r"\mathbf G",
+                "force at the connection point that balances the leg's "
+                "inertia and weight along all freedoms",
+                Law.RECIPROCITY,
+                unit="N",
+                coefficient_latex=r"\mathbf C",
+                body=frame,
+                reference="Sec. 2.3",
+            )
         self.G = G
         self.G_m: Any = vector_sum(gamma[j] * o for j, o in motion.o.items() if gamma[j] != 0)
         if self.G_m != ZeroVector:
             self.G_m = self.write.define(
-                "G_m", self.G_m, r"\mathbf G_m", "moment at the connection point that balances "
-                "the leg's inertia and weight along all freedoms", Law.RECIPROCITY, unit="N m",
-                coefficient_latex=r"\mathbf C_m", body=frame, reference="Sec. 2.2, joint table")
+                "G_m",
+                self.G_m,
+                r"\mathbf G_m",
+                "moment at the connection point that balances "
+                "the leg's inertia and weight along all freedoms",
+                Law.RECIPROCITY,
+                unit="N m",
+                coefficient_latex=r"\mathbf C_m",
+                body=frame,
+                reference="Sec. 2.2, joint table",
+            )
         lost: Any = ZeroVector
         if motion.normals and a_tip is not None:
             # The reaction along a direction left out is lambda itself, the last link's share
@@ -395,29 +580,67 @@ class DynamicsWriter:
             # link's mass cannot move to the platform.
             phi, lost = self._without_normals(result.tip_mass * a_tip + phi)
             result.tip_mass, a_tip = sp.S.Zero, None
-        c = self.write.define(
-            "c", -(G + phi), r"\mathbf c",
-            "leg force on the platform without actuation and without the mass at the connection "
-            "point", Law.REDUCTION, unit="N", coefficient_latex=r"\mathbf K", body=frame,
-            reference="Eq. 3") if G + phi != ZeroVector else ZeroVector
+        c = (
+            self.write.define(
+                "c",
+                -(G + phi),
+                r"\mathbf c",
+                "leg force on the platform without actuation and without the mass at the connection "
+                "point",
+                Law.REDUCTION,
+                unit="N",
+                coefficient_latex=r"\mathbf K",
+                body=frame,
+                reference="Eq. 3",
+            )
+            if G + phi != ZeroVector
+            else ZeroVector
+        )
         form = motion.known.get(c, LinearForm({}, ZeroVector))
         result.force, result.form = c, form
         result.Q = ZeroTensor
         if motion.a_p in form.coefficients:
             result.Q = book.define(
-                g.name("Q"), -form.coefficients[motion.a_p], r"\mathbf Q",
+                g.name("Q"),
+                -form.coefficients[motion.a_p],
+                r"\mathbf Q",
                 "inertia of the leg at the connection point, without the mass gathered there",
-                Law.RULES, unit="kg", body=frame, symmetric=True, reference="Eq. 4")
+                Law.RULES,
+                unit="kg",
+                body=frame,
+                symmetric=True,
+                reference="Eq. 4",
+            )
         self._moments(result, lost)
-        result.U = ZeroVector if form.remainder == ZeroVector else book.define(
-            g.name("U"), -form.remainder, r"\mathbf U",
-            "velocity and gravity terms of the leg force", Law.RULES, unit="N", body=frame,
-            reference="Eq. 4")
+        result.U = (
+            ZeroVector
+            if form.remainder == ZeroVector
+            else book.define(
+                g.name("U"),
+                -form.remainder,
+                r"\mathbf U",
+                "velocity and gravity terms of the leg force",
+                Law.RULES,
+                unit="N",
+                body=frame,
+                reference="Eq. 4",
+            )
+        )
         tip_force = result.tip_mass * a_tip if a_tip is not None else ZeroVector
-        result.true_force = c if tip_force == ZeroVector else book.define(
-            g.name("c_true"), c - tip_force, r"\mathbf c^*",
-            "leg force on the platform without actuation, the last link's mass included",
-            Law.NEWTON, unit="N", body=frame, reference="Eq. 3")
+        result.true_force = (
+            c
+            if tip_force == ZeroVector
+            else book.define(
+                g.name("c_true"),
+                c - tip_force,
+                r"\mathbf c^*",
+                "leg force on the platform without actuation, the last link's mass included",
+                Law.NEWTON,
+                unit="N",
+                body=frame,
+                reference="Eq. 3",
+            )
+        )
 
     def _moments(self, result: LegDynamics, lost: Any) -> None:
         """The moment that the leg transmits, with its linear form."""
@@ -425,9 +648,16 @@ class DynamicsWriter:
         if total == ZeroVector:
             return
         c = self.write.define(
-            "c_m", -total, r"\mathbf c_m",
-            "moment of the leg on the platform without actuation", Law.REDUCTION, unit="N m",
-            coefficient_latex=r"-\mathbf Q'_m", body=self.k.tip_frame(), reference="Eq. 3")
+            "c_m",
+            -total,
+            r"\mathbf c_m",
+            "moment of the leg on the platform without actuation",
+            Law.REDUCTION,
+            unit="N m",
+            coefficient_latex=r"-\mathbf Q'_m",
+            body=self.k.tip_frame(),
+            reference="Eq. 3",
+        )
         result.moment, result.moment_form = c, self.motion.known.get(c, LinearForm({}, c))
 
     def _without_normals(self, force: Any) -> tuple[Any, Any]:
@@ -437,24 +667,44 @@ class DynamicsWriter:
         """
         body = self.k.tip_frame()
         total = self.write.define(
-            "f_tip", force, r"\mathbf f_u", "inertia force of the last link less its weight",
-            Law.NEWTON, unit="N", coefficient_latex=r"\boldsymbol\Phi_u", body=body,
-            reference="Eq. 1")
+            "f_tip",
+            force,
+            r"\mathbf f_u",
+            "inertia force of the last link less its weight",
+            Law.NEWTON,
+            unit="N",
+            coefficient_latex=r"\boldsymbol\Phi_u",
+            body=body,
+            reference="Eq. 1",
+        )
         shares = []
         for k, (n, moment) in enumerate(self.motion.normals, 1):
             share = Dot(n, total)
             if moment != ZeroVector:
-                share = share / (1 + self.book.define(
-                    self.g.name(f"mu2_{k}"), Dot(moment, moment), rf"\mu_{{{k}}}^2",
-                    "squared moment that goes with the unit force", Law.REDUCTION))
+                share = share / (
+                    1
+                    + self.book.define(
+                        self.g.name(f"mu2_{k}"),
+                        Dot(moment, moment),
+                        rf"\mu_{{{k}}}^2",
+                        "squared moment that goes with the unit force",
+                        Law.REDUCTION,
+                    )
+                )
             shares.append((share, n, moment))
         along = vector_sum(share * n for share, n, _ in shares)
         lost = vector_sum(-share * moment for share, _, moment in shares)
         free = self.write.define(
-            "f_free", total - along, r"\mathbf f'_u",
+            "f_free",
+            total - along,
+            r"\mathbf f'_u",
             "inertia force of the last link across the directions that the leg leaves out",
-            Law.REDUCTION, unit="N", coefficient_latex=r"\boldsymbol\Phi'_u", body=body,
-            reference="Eq. 35")
+            Law.REDUCTION,
+            unit="N",
+            coefficient_latex=r"\boldsymbol\Phi'_u",
+            body=body,
+            reference="Eq. 35",
+        )
         return free, lost
 
     def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any], phi: Any) -> None:
@@ -464,9 +714,14 @@ class DynamicsWriter:
         if g.turns(j) and self.G_m != ZeroVector:
             row = row - Dot(g.e[j], self.G_m)
         symbol = self.write.define(
-            f"P_{j}", row, rf"P_{{{j}}}",
-            f"inertia and weight of the leg along the extra freedom of joint {j}", Law.FREEDOM,
-            unit="N m" if g.turns(j) else "N", coefficient_latex=rf"\mathbf m_{{{j}}}",
-            reference="Eqs. 6, 7")
+            f"P_{j}",
+            row,
+            rf"P_{{{j}}}",
+            f"inertia and weight of the leg along the extra freedom of joint {j}",
+            Law.FREEDOM,
+            unit="N m" if g.turns(j) else "N",
+            coefficient_latex=rf"\mathbf m_{{{j}}}",
+            reference="Eqs. 6, 7",
+        )
         result.extra_rows[j] = (symbol, motion.known[symbol])
         del phi

@@ -168,14 +168,26 @@ class _Builder:
         self.c = geometry.canonical
 
     def field(
-        self, stem: str, shape: tuple[int, ...], unit: str, meaning: str, path: str, pick: Any,
+        self,
+        stem: str,
+        shape: tuple[int, ...],
+        unit: str,
+        meaning: str,
+        path: str,
+        pick: Any,
         zeros: tuple[int, ...] = (),
     ) -> tuple[sp.Expr, ...]:
         paths = tuple(f"legs[{i}].{path}" for i in self.type.indices)
         return self.book.parameters.add(
             ParameterField(
-                f"{self.type.name}_{stem}", self.type.name, shape, unit, meaning, paths,
-                self.type.over_legs(pick), zeros,
+                f"{self.type.name}_{stem}",
+                self.type.name,
+                shape,
+                unit,
+                meaning,
+                paths,
+                self.type.over_legs(pick),
+                zeros,
             )
         )
 
@@ -188,17 +200,40 @@ class _Builder:
 
     def points(self) -> None:
         flat = (2,) if self.planar else ()
-        b = self.field("base_point", (3,), "m", "base point, base frame", "base_point",
-                       lambda leg: leg.base_point, flat)
-        frame = self.field("base_frame", (3, 3), "-", "rotation from leg axes to base axes",
-                           "base_frame", lambda leg: leg.base_frame)
-        p = self.field("platform_point", (3,), "m", "platform joint, platform frame",
-                       "platform_point", lambda leg: leg.platform_point, flat)
+        b = self.field(
+            "base_point",
+            (3,),
+            "m",
+            "base point, base frame",
+            "base_point",
+            lambda leg: leg.base_point,
+            flat,
+        )
+        frame = self.field(
+            "base_frame",
+            (3, 3),
+            "-",
+            "rotation from leg axes to base axes",
+            "base_frame",
+            lambda leg: leg.base_frame,
+        )
+        p = self.field(
+            "platform_point",
+            (3,),
+            "m",
+            "platform joint, platform frame",
+            "platform_point",
+            lambda leg: leg.platform_point,
+            flat,
+        )
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
         self.g.base_point = self.give("b", "base", b, r"\mathbf b", "base point of the leg")
         self.g.platform_point = self.give(
-            "q", "platform", p, r"\mathbf q",
+            "q",
+            "platform",
+            p,
+            r"\mathbf q",
             "platform origin to connection point, fixed in the platform",
         )
         self.book.frames.append(Frame(self.g.frame("spec", 0), "base", frame))
@@ -211,13 +246,21 @@ class _Builder:
                 self.spec[j] = tuple(sp.Integer(int(a)) for a in joint.axis)
             else:
                 self.spec[j] = self.field(
-                    f"joint{j}_axis", (3,), "-", f"axis of joint {j}, preceding link's frame",
-                    f"joints[{j - 1}].axis", lambda leg, j=j: leg.joints[j - 1].axis,
+                    f"joint{j}_axis",
+                    (3,),
+                    "-",
+                    f"axis of joint {j}, preceding link's frame",
+                    f"joints[{j - 1}].axis",
+                    lambda leg, j=j: leg.joints[j - 1].axis,
                 )
             if joint.kind is JointKind.HELICAL:
                 (g.pitch[j],) = self.field(
-                    f"joint{j}_pitch", (), "m/rad", f"pitch of joint {j}",
-                    f"joints[{j - 1}].pitch", lambda leg, j=j: leg.joints[j - 1].pitch,
+                    f"joint{j}_pitch",
+                    (),
+                    "m/rad",
+                    f"pitch of joint {j}",
+                    f"joints[{j - 1}].pitch",
+                    lambda leg, j=j: leg.joints[j - 1].pitch,
                 )
             group = j if g.turns(j) else group
             g.group[j] = group
@@ -254,13 +297,22 @@ class _Builder:
             path = "platform_joint.offset" if last else f"joints[{j - 1}].offset"
             what = "platform joint" if last else f"joint {j}"
             components = self.field(
-                stem, (3,), "m", f"offset of {what}, preceding link's frame", path,
-                lambda leg, j=j: (*(x.offset for x in leg.joints), leg.platform_joint.offset)[j - 1],
+                stem,
+                (3,),
+                "m",
+                f"offset of {what}, preceding link's frame",
+                path,
+                lambda leg, j=j: (*(x.offset for x in leg.joints), leg.platform_joint.offset)[
+                    j - 1
+                ],
                 zeros,
             )
             self.g.offset[j] = self.give(
-                f"d_{j}", self.g.frame("spec", self.g.group[j - 1]), components,
-                rf"\mathbf d_{{{j}}}", f"offset of {what}, fixed in link {j - 1}",
+                f"d_{j}",
+                self.g.frame("spec", self.g.group[j - 1]),
+                components,
+                rf"\mathbf d_{{{j}}}",
+                f"offset of {what}, fixed in link {j - 1}",
             )
 
     def frames(self) -> None:
@@ -279,20 +331,30 @@ class _Builder:
         found: list[tuple[Any, Array]] = []
         members = [j for j in self.g.group if self.g.group[j] == group]
         slides = [j for j in members if j and not self.g.turns(j)]
-        following = [j for j in range(1, self.g.count + 1)
-                     if self.g.turns(j) and self.g.group[j - 1] == group and j != group]
+        following = [
+            j
+            for j in range(1, self.g.count + 1)
+            if self.g.turns(j) and self.g.group[j - 1] == group and j != group
+        ]
         for j in slides + following:
-            found.append((self.spec[j], self.type.over_legs(lambda leg, j=j: leg.joints[j - 1].axis)))
+            found.append(
+                (self.spec[j], self.type.over_legs(lambda leg, j=j: leg.joints[j - 1].axis))
+            )
         for j in [j + 1 for j in members]:
             joints = self.type.model.joints
-            value = joints[j - 1].offset if j <= self.g.count else self.type.model.platform_joint.offset
+            value = (
+                joints[j - 1].offset if j <= self.g.count else self.type.model.platform_joint.offset
+            )
             nonzero = [i for i in range(3) if value[i] != 0.0]
             if len(nonzero) == 1:
                 axis = _E[nonzero[0]]
-                found.append((tuple(sp.Integer(int(a)) for a in axis),
-                              np.tile(axis, (self.type.count, 1))))
-        found.extend((tuple(sp.Integer(int(a)) for a in axis), np.tile(axis, (self.type.count, 1)))
-                     for axis in _E)
+                found.append(
+                    (tuple(sp.Integer(int(a)) for a in axis), np.tile(axis, (self.type.count, 1)))
+                )
+        found.extend(
+            (tuple(sp.Integer(int(a)) for a in axis), np.tile(axis, (self.type.count, 1)))
+            for axis in _E
+        )
         return found
 
     def _canonical(self, group: int, z: Any, z_values: Array) -> tuple[Any, Array, bool]:
@@ -336,10 +398,17 @@ class _Builder:
             self.g.exact_frames.add(group)
             return matrix, None
         frame = self.g.frame("spec", group)
-        z_vector = self.give(f"z_{group}", frame, z, rf"\mathbf z_{{{group}}}",
-                             f"axis of group {group}", "-")
-        direction = self.give(f"l_{group}", frame, components, rf"\mathbf l_{{{group}}}",
-                              f"direction of interest in group {group}", "-")
+        z_vector = self.give(
+            f"z_{group}", frame, z, rf"\mathbf z_{{{group}}}", f"axis of group {group}", "-"
+        )
+        direction = self.give(
+            f"l_{group}",
+            frame,
+            components,
+            rf"\mathbf l_{{{group}}}",
+            f"direction of interest in group {group}",
+            "-",
+        )
         x_vector = self._perpendicular_unit(group, direction, z_vector)
         self.g.x_axis[group] = x_vector
         return matrix, (x_vector, Cross(z_vector, x_vector), z_vector)
@@ -348,13 +417,21 @@ class _Builder:
         """Equation for the unit vector along the direction's part perpendicular to z."""
         name = self.g.name(f"n{zero}_{group}")
         part = self.book.define(
-            f"{name}_part", direction - Dot(z, direction) * z,
-            rf"\mathbf n'_{{{group}}}", f"part of the direction perpendicular to axis {group}",
-            Law.GEOMETRY, parameter=True, body=self.g.frame("spec", group),
+            f"{name}_part",
+            direction - Dot(z, direction) * z,
+            rf"\mathbf n'_{{{group}}}",
+            f"part of the direction perpendicular to axis {group}",
+            Law.GEOMETRY,
+            parameter=True,
+            body=self.g.frame("spec", group),
         )
         return self.book.define(
-            name, part / norm(part), rf"\mathbf n_{{{group}}}",
-            f"canonical x axis of group {group}", Law.GEOMETRY, parameter=True,
+            name,
+            part / norm(part),
+            rf"\mathbf n_{{{group}}}",
+            f"canonical x axis of group {group}",
+            Law.GEOMETRY,
+            parameter=True,
         )
 
     def _turn_frame(self, j: int, previous: int) -> None:
@@ -379,47 +456,96 @@ class _Builder:
             self.g.zero_turn[j] = (sp.Integer(round(cosine[0])), sp.Integer(round(sine[0])))
         else:
             self._general_turn(j, previous, turn, tilt)
-        angle = (sp.Symbol(self.g.name(f"c_{j}"), real=True),
-                 sp.Symbol(self.g.name(f"s_{j}"), real=True))
+        angle = (
+            sp.Symbol(self.g.name(f"c_{j}"), real=True),
+            sp.Symbol(self.g.name(f"s_{j}"), real=True),
+        )
         frames.append(Frame(axes_name, turn_name, angle=angle))
-        frames.append(Frame(self.g.frame("spec", j), axes_name,
-                            _pattern(np.transpose(matrix, (0, 2, 1))), rows=vectors))
+        frames.append(
+            Frame(
+                self.g.frame("spec", j),
+                axes_name,
+                _pattern(np.transpose(matrix, (0, 2, 1))),
+                rows=vectors,
+            )
+        )
 
     def _general_turn(self, j: int, previous: int, turn: Array, tilt: int) -> None:
         """Turn frame and zero angle from live axes."""
         g, frame = self.g, self.g.frame("spec", previous)
-        axis = self.give(f"z0_{j}", frame, self.spec[j], rf"\mathbf e_{{{j}}}",
-                         f"axis of joint {j}, fixed in link {j - 1}", "-")
+        axis = self.give(
+            f"z0_{j}",
+            frame,
+            self.spec[j],
+            rf"\mathbf e_{{{j}}}",
+            f"axis of joint {j}, fixed in link {j - 1}",
+            "-",
+        )
         frame_axes = g.frame("axes", previous)
         directions = [
-            self.give(f"k{i}_{j}", frame_axes, tuple(sp.Integer(int(v)) for v in _E[i]),
-                      rf"\mathbf k_{{{i}{j}}}", f"axis {i} of group {previous}", "-")
+            self.give(
+                f"k{i}_{j}",
+                frame_axes,
+                tuple(sp.Integer(int(v)) for v in _E[i]),
+                rf"\mathbf k_{{{i}{j}}}",
+                f"axis {i} of group {previous}",
+                "-",
+            )
             for i in (tilt,)
         ]
         across = self.book.define(
-            g.name(f"across_{j}"), Cross(directions[0], axis), rf"\mathbf a'_{{{j}}}",
-            f"direction across axis {j}", Law.GEOMETRY, parameter=True, body=frame_axes,
+            g.name(f"across_{j}"),
+            Cross(directions[0], axis),
+            rf"\mathbf a'_{{{j}}}",
+            f"direction across axis {j}",
+            Law.GEOMETRY,
+            parameter=True,
+            body=frame_axes,
         )
         reference = self.book.define(
-            g.name(f"reference_{j}"), across / norm(across), rf"\mathbf a^0_{{{j}}}",
-            f"reference direction of the angle of joint {j}", Law.GEOMETRY, parameter=True,
+            g.name(f"reference_{j}"),
+            across / norm(across),
+            rf"\mathbf a^0_{{{j}}}",
+            f"reference direction of the angle of joint {j}",
+            Law.GEOMETRY,
+            parameter=True,
             body=frame_axes,
         )
         self.book.frames.append(
-            Frame(g.frame("turn", j), frame_axes, _pattern(turn),
-                  axes=(reference, Cross(axis, reference), axis))
+            Frame(
+                g.frame("turn", j),
+                frame_axes,
+                _pattern(turn),
+                axes=(reference, Cross(axis, reference), axis),
+            )
         )
         components = self.choice[j]
-        direction = self.give(f"l0_{j}", frame, components, rf"\mathbf l^0_{{{j}}}",
-                              f"direction of interest of group {j} at zero displacement", "-")
+        direction = self.give(
+            f"l0_{j}",
+            frame,
+            components,
+            rf"\mathbf l^0_{{{j}}}",
+            f"direction of interest of group {j} at zero displacement",
+            "-",
+        )
         x_zero = self._perpendicular_unit(j, direction, axis, zero="0")
         g.zero_turn[j] = (
-            self.book.define(g.name(f"c0_{j}"), Dot(reference, x_zero), f"c^0_{{{j}}}",
-                             f"cosine of the angle at zero displacement of joint {j}",
-                             Law.GEOMETRY, parameter=True),
-            self.book.define(g.name(f"s0_{j}"), Dot(axis, Cross(reference, x_zero)), f"s^0_{{{j}}}",
-                             f"sine of the angle at zero displacement of joint {j}",
-                             Law.GEOMETRY, parameter=True),
+            self.book.define(
+                g.name(f"c0_{j}"),
+                Dot(reference, x_zero),
+                f"c^0_{{{j}}}",
+                f"cosine of the angle at zero displacement of joint {j}",
+                Law.GEOMETRY,
+                parameter=True,
+            ),
+            self.book.define(
+                g.name(f"s0_{j}"),
+                Dot(axis, Cross(reference, x_zero)),
+                f"s^0_{{{j}}}",
+                f"sine of the angle at zero displacement of joint {j}",
+                Law.GEOMETRY,
+                parameter=True,
+            ),
         )
 
     def _note_straight_ends(self) -> None:
@@ -429,11 +555,14 @@ class _Builder:
             if not g.turns(j):
                 continue
             straight = all(
-                g.offset[i] == ZeroVector or (g.group[i - 1] == j and g.offset_is_zero(j, i)[:2]
-                                              == (True, True))
-                for i in range(j + 1, g.count + 2))
-            slides = all((not g.turns(i) and g.parallel(j, i)) or i in g.unseen
-                         for i in range(j + 1, g.count + 1))
+                g.offset[i] == ZeroVector
+                or (g.group[i - 1] == j and g.offset_is_zero(j, i)[:2] == (True, True))
+                for i in range(j + 1, g.count + 2)
+            )
+            slides = all(
+                (not g.turns(i) and g.parallel(j, i)) or i in g.unseen
+                for i in range(j + 1, g.count + 1)
+            )
             if j in g.pitch and not (straight and slides):
                 g.bent_helices.add(j)
             if j not in g.pitch and straight and slides and not g.is_extra(j):
@@ -442,8 +571,9 @@ class _Builder:
     def _give_axis(self, j: int) -> None:
         """The axis vector e_j, in the frame where it is simplest."""
         group = self.g.group[j]
-        values = np.einsum("lji,lj->li", self.c[group],
-                           self.type.over_legs(lambda leg: leg.joints[j - 1].axis))
+        values = np.einsum(
+            "lji,lj->li", self.c[group], self.type.over_legs(lambda leg: leg.joints[j - 1].axis)
+        )
         pattern = _pattern(values)
         meaning = f"axis of joint {j}"
         if None in pattern:
@@ -458,12 +588,17 @@ class _Builder:
         if self.planar or end.kind is PlatformJointKind.SPHERICAL:
             return
         if end.kind is PlatformJointKind.RIGID:
-            rows = self.field("platform_joint_rotation", (3, 3), "-",
-                              "platform axes in the last link's frame", "platform_joint.rotation",
-                              lambda leg: leg.platform_joint.rotation)
+            rows = self.field(
+                "platform_joint_rotation",
+                (3, 3),
+                "-",
+                "platform axes in the last link's frame",
+                "platform_joint.rotation",
+                lambda leg: leg.platform_joint.rotation,
+            )
             for k in range(3):
                 i = (k + 1) % 3
-                self._pair(k, tuple(sp.Integer(int(v)) for v in _E[k]), rows[3 * i: 3 * i + 3])
+                self._pair(k, tuple(sp.Integer(int(v)) for v in _E[k]), rows[3 * i : 3 * i + 3])
             return
         link = self._end_axis("axis_link", end.axis_link)
         platform = self._end_axis("axis_platform", end.axis_platform)
@@ -476,27 +611,53 @@ class _Builder:
     def _end_axis(self, name: str, axis: Any) -> Any:
         if is_coordinate(axis):
             return tuple(sp.Integer(int(a)) for a in axis)
-        return self.field(f"platform_joint_{name}", (3,), "-", f"{name} of the platform joint",
-                          f"platform_joint.{name}", lambda leg: getattr(leg.platform_joint, name))
+        return self.field(
+            f"platform_joint_{name}",
+            (3,),
+            "-",
+            f"{name} of the platform joint",
+            f"platform_joint.{name}",
+            lambda leg: getattr(leg.platform_joint, name),
+        )
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
         last = self.g.frame("spec", self.g.group[self.g.count])
-        u = self.give(f"end_l{k + 1}", last, link, rf"\mathbf a_{{l{k + 1}}}",
-                      "direction of the platform joint, fixed in the last link", "-")
-        w = self.give(f"end_p{k + 1}", "platform", platform, rf"\mathbf a_{{p{k + 1}}}",
-                      "direction of the platform joint, fixed in the platform", "-")
+        u = self.give(
+            f"end_l{k + 1}",
+            last,
+            link,
+            rf"\mathbf a_{{l{k + 1}}}",
+            "direction of the platform joint, fixed in the last link",
+            "-",
+        )
+        w = self.give(
+            f"end_p{k + 1}",
+            "platform",
+            platform,
+            rf"\mathbf a_{{p{k + 1}}}",
+            "direction of the platform joint, fixed in the platform",
+            "-",
+        )
         self.g.pairs.append((u, w))
         values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or _E[k])
-        self.g.end_pattern = _pattern(np.einsum(
-            "lji,lj->li", self.c[self.g.group[self.g.count]], values))
+        self.g.end_pattern = _pattern(
+            np.einsum("lji,lj->li", self.c[self.g.group[self.g.count]], values)
+        )
 
     def size(self) -> None:
         """Characteristic length by which singular legs are recognised."""
-        vectors = [self.g.base_point, self.g.platform_point,
-                   *(v for v in self.g.offset.values() if v != ZeroVector)]
+        vectors = [
+            self.g.base_point,
+            self.g.platform_point,
+            *(v for v in self.g.offset.values() if v != ZeroVector),
+        ]
         self.g.size = self.book.define(
-            self.g.name("size"), sp.sqrt(sp.Add(*(Dot(v, v) for v in vectors))), r"\ell",
-            "size of the leg, the measure of what is near singular", Law.LUMPING, unit="m",
+            self.g.name("size"),
+            sp.sqrt(sp.Add(*(Dot(v, v) for v in vectors))),
+            r"\ell",
+            "size of the leg, the measure of what is near singular",
+            Law.LUMPING,
+            unit="m",
             parameter=True,
         )
 
@@ -545,4 +706,3 @@ def _reference(local: Array) -> tuple[Array, int]:
     reference = np.cross(_E[tilt], local)
     reference /= np.linalg.norm(reference, axis=1)[:, None]
     return reference, tilt
-

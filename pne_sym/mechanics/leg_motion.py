@@ -106,16 +106,27 @@ class LinearWriter:
         self.motion = motion
 
     def define(
-        self, stem: str, rhs: Any, latex: str, title: str, law: Law, *, unit: str,
-        coefficient_latex: str, body: str | None = None, forms: Sequence[Any] = (),
-        rest_forms: Sequence[Any] = (), reference: str = "",
+        self,
+        stem: str,
+        rhs: Any,
+        latex: str,
+        title: str,
+        law: Law,
+        *,
+        unit: str,
+        coefficient_latex: str,
+        body: str | None = None,
+        forms: Sequence[Any] = (),
+        rest_forms: Sequence[Any] = (),
+        reference: str = "",
     ) -> Any:
         """Define x = rhs, its coefficients and its remainder; returns x."""
         book, g, motion = self.book, self.g, self.motion
         name = g.name(stem)
         form = linear_form(rhs, motion.unknowns, motion.known)
-        symbol = book.define(name, rhs, latex, title, law, unit=unit, body=body, forms=forms,
-                             reference=reference)
+        symbol = book.define(
+            name, rhs, latex, title, law, unit=unit, body=body, forms=forms, reference=reference
+        )
         coefficients: dict[Any, Any] = {}
         for k, (unknown, value) in enumerate(form.coefficients.items()):
             if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
@@ -125,17 +136,30 @@ class LinearWriter:
             label = coefficient_latex if first else f"{latex}^{{({_mark(unknown)})}}"
             short = "d" if first else f"d{k}"
             coefficients[unknown] = book.define(
-                f"{short}_{name}", value, label,
-                f"coefficient of the acceleration in: {title}", Law.RULES, body=body,
-                linear=form if first else None, expanded=rhs, reference="Sec. 2.3, Eq. 4",
+                f"{short}_{name}",
+                value,
+                label,
+                f"coefficient of the acceleration in: {title}",
+                Law.RULES,
+                body=body,
+                linear=form if first else None,
+                expanded=rhs,
+                reference="Sec. 2.3, Eq. 4",
                 unit=f"({unit})/(m/s^2)" if first else "",
             )
         remainder = form.remainder
         if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
             remainder = book.define(
-                f"{name}_o", remainder, f"{latex}^{{\\circ}}",
-                f"remainder without the acceleration in: {title}", Law.RULES, unit=unit, body=body,
-                forms=rest_forms, expanded=rhs, reference="Sec. 2.3, Eq. 4",
+                f"{name}_o",
+                remainder,
+                f"{latex}^{{\\circ}}",
+                f"remainder without the acceleration in: {title}",
+                Law.RULES,
+                unit=unit,
+                body=body,
+                forms=rest_forms,
+                expanded=rhs,
+                reference="Sec. 2.3, Eq. 4",
             )
         motion.known[symbol] = LinearForm(coefficients, remainder)
         return symbol
@@ -163,7 +187,11 @@ class MotionWriter:
     """Writes rates and accelerations of a leg."""
 
     def __init__(
-        self, book: Book, g: LegGeometry, platform: PlatformMotion, space: TaskSpace,
+        self,
+        book: Book,
+        g: LegGeometry,
+        platform: PlatformMotion,
+        space: TaskSpace,
         inverse: InverseKinematics,
     ) -> None:
         self.book, self.g, self.p, self.space = book, g, platform, space
@@ -175,11 +203,16 @@ class MotionWriter:
     def write(self, prefix: str) -> LegMotion:
         """Write the chapters on rates and accelerations."""
         leg_type = self.g.leg_type
-        self.book.chapter(f"{prefix}-V", f"Rates of a {leg_type.architecture} leg", _RATES,
-                          leg_type.name)
+        self.book.chapter(
+            f"{prefix}-V", f"Rates of a {leg_type.architecture} leg", _RATES, leg_type.name
+        )
         self.velocity()
-        self.book.chapter(f"{prefix}-A", f"Accelerations of a {leg_type.architecture} leg",
-                          _ACCELERATIONS, leg_type.name)
+        self.book.chapter(
+            f"{prefix}-A",
+            f"Accelerations of a {leg_type.architecture} leg",
+            _ACCELERATIONS,
+            leg_type.name,
+        )
         self.acceleration()
         return self.motion
 
@@ -212,9 +245,15 @@ class MotionWriter:
         if isinstance(vector, VectorSymbol) or vector == ZeroVector:
             return vector
         return self.book.define(
-            g.name(f"r_{j}"), vector, rf"\mathbf r_{{{j}}}",
-            f"from joint {j} to the connection point, along the links", Law.GEOMETRY, unit="m",
-            body=g.frame("axes", j), forms=self._closed_loop(j))
+            g.name(f"r_{j}"),
+            vector,
+            rf"\mathbf r_{{{j}}}",
+            f"from joint {j} to the connection point, along the links",
+            Law.GEOMETRY,
+            unit="m",
+            body=g.frame("axes", j),
+            forms=self._closed_loop(j),
+        )
 
     def _closed_loop(self, j: int) -> tuple[Vector, ...]:
         """The same vector, seen from the base; resolved vectors give way to what they resolve."""
@@ -229,9 +268,15 @@ class MotionWriter:
     def velocity(self) -> None:
         g, book, p = self.g, self.book, self.p
         self.S_dot = book.define(
-            g.name("S_dot"), p.t_dot + Cross(p.omega, g.platform_point), r"\dot{\mathbf S}",
-            "velocity of the connection point", Law.RATE, unit="m/s", reference="Sec. 2.5, step 1.1",
-            body="base")
+            g.name("S_dot"),
+            p.t_dot + Cross(p.omega, g.platform_point),
+            r"\dot{\mathbf S}",
+            "velocity of the connection point",
+            Law.RATE,
+            unit="m/s",
+            reference="Sec. 2.5, step 1.1",
+            body="base",
+        )
         turning = [j for j in range(1, g.count + 1) if g.turns(j)]
         self.spans = {group: self.span(group) for group in [0, *turning]}
         rods: dict[int, Vector] = {}
@@ -254,9 +299,15 @@ class MotionWriter:
         if j in g.pitch:
             vector = vector + g.pitch[j] * g.e[j]
         return self.book.define(
-            g.name(f"v_{j}"), vector, rf"\mathbf v_{{{j}}}",
-            f"velocity of the connection point per rate of joint {j}", Law.RATE, unit="m",
-            body=self.tip_frame(), reference="Sec. 2.2, joint table")
+            g.name(f"v_{j}"),
+            vector,
+            rf"\mathbf v_{{{j}}}",
+            f"velocity of the connection point per rate of joint {j}",
+            Law.RATE,
+            unit="m",
+            body=self.tip_frame(),
+            reference="Sec. 2.2, joint table",
+        )
 
     def tip_frame(self) -> str:
         """Canonical frame of the last link."""
@@ -272,58 +323,95 @@ class MotionWriter:
         rows = [[Dot(g.e[j], n) if g.turns(j) else sp.S.Zero for j in joints] for n in motion.n]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
         for normal, moments in self._left_out(joints, missing):
-            motion.normals.append((normal, vector_sum(
-                m * n for m, n in zip(moments, motion.n, strict=True))))
+            motion.normals.append(
+                (normal, vector_sum(m * n for m, n in zip(moments, motion.n, strict=True)))
+            )
             vectors.append(normal)
             scales.append(sp.S.One)
             for row, moment in zip(rows, moments, strict=True):
                 row.append(moment)
         names = [*(f"w_{j}" for j in joints), *(f"wn_{k + 1}" for k in range(missing))]
-        latexes = [*(rf"\mathbf w_{{{j}}}" for j in joints),
-                   *(rf"\mathbf w_{{c{k + 1}}}" for k in range(missing))]
+        latexes = [
+            *(rf"\mathbf w_{{{j}}}" for j in joints),
+            *(rf"\mathbf w_{{c{k + 1}}}" for k in range(missing)),
+        ]
         duals, moment_duals = (
-            self._define_wrenches(vectors, rows, names, latexes) if rows
-            else (self._define_duals(vectors, names, latexes), []))
+            self._define_wrenches(vectors, rows, names, latexes)
+            if rows
+            else (self._define_duals(vectors, names, latexes), [])
+        )
         motion.w = dict(zip(joints, duals, strict=False))
         for j, amounts in zip(joints, moment_duals, strict=False):
             motion.m[j] = amounts
             motion.o[j] = self.book.define(
                 g.name(f"o_{j}"),
                 vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True)),
-                rf"\mathbf o_{{{j}}}", f"moment part of reciprocal wrench {j}", Law.RECIPROCITY,
-                body=self.tip_frame(), reference="Sec. 2.2, joint table")
-        frames = tuple(dict.fromkeys(
-            g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
-        self.book.bases.append(ReciprocalBasis(
-            g.leg_type.name, tuple(vectors), tuple(duals), tuple(scales), frames,
-            tuple(tuple(row) for row in rows), tuple(tuple(m) for m in moment_duals)))
+                rf"\mathbf o_{{{j}}}",
+                f"moment part of reciprocal wrench {j}",
+                Law.RECIPROCITY,
+                body=self.tip_frame(),
+                reference="Sec. 2.2, joint table",
+            )
+        frames = tuple(dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
+        self.book.bases.append(
+            ReciprocalBasis(
+                g.leg_type.name,
+                tuple(vectors),
+                tuple(duals),
+                tuple(scales),
+                frames,
+                tuple(tuple(row) for row in rows),
+                tuple(tuple(m) for m in moment_duals),
+            )
+        )
 
     def _moment_directions(self) -> None:
         """Directions of the moments that the platform joint transmits."""
         for k, (link, platform) in enumerate(self.g.pairs, 1):
-            self.motion.n.append(self.book.define(
-                self.g.name(f"n_m{k}"), Cross(link, platform), rf"\mathbf n_{{m{k}}}",
-                f"direction {k} of the moment that the platform joint transmits", Law.GEOMETRY,
-                body=self.tip_frame(), reference="Sec. 2.2, joint table"))
+            self.motion.n.append(
+                self.book.define(
+                    self.g.name(f"n_m{k}"),
+                    Cross(link, platform),
+                    rf"\mathbf n_{{m{k}}}",
+                    f"direction {k} of the moment that the platform joint transmits",
+                    Law.GEOMETRY,
+                    body=self.tip_frame(),
+                    reference="Sec. 2.2, joint table",
+                )
+            )
 
-    def _define_wrenches(self, vectors: list[Any], rows: list[list[Any]], names: list[str],
-                         latexes: list[str]) -> tuple[list[Any], list[list[Any]]]:
+    def _define_wrenches(
+        self, vectors: list[Any], rows: list[list[Any]], names: list[str], latexes: list[str]
+    ) -> tuple[list[Any], list[list[Any]]]:
         """Reciprocal wrenches where the leg transmits moments."""
         book, g = self.book, self.g
         screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
         duals, moments = [], []
         for k in range(len(vectors)):
-            duals.append(book.define(
-                g.name(names[k]), DualVector(sp.Integer(k), *screws), latexes[k],
-                f"force part of reciprocal wrench {k + 1}", Law.RECIPROCITY,
-                body=self.tip_frame(), reference="Sec. 2.2, joint table"))
-            moments.append([
+            duals.append(
                 book.define(
-                    g.name(f"m{i + 1}_{names[k]}"),
-                    DualScalar(sp.Integer(k), sp.Integer(i), *screws),
-                    f"m_{{{k + 1}{i + 1}}}", f"moment part {i + 1} of reciprocal wrench {k + 1}",
-                    Law.RECIPROCITY, reference="Sec. 2.2, joint table")
-                for i in range(len(rows))])
+                    g.name(names[k]),
+                    DualVector(sp.Integer(k), *screws),
+                    latexes[k],
+                    f"force part of reciprocal wrench {k + 1}",
+                    Law.RECIPROCITY,
+                    body=self.tip_frame(),
+                    reference="Sec. 2.2, joint table",
+                )
+            )
+            moments.append(
+                [
+                    book.define(
+                        g.name(f"m{i + 1}_{names[k]}"),
+                        DualScalar(sp.Integer(k), sp.Integer(i), *screws),
+                        f"m_{{{k + 1}{i + 1}}}",
+                        f"moment part {i + 1} of reciprocal wrench {k + 1}",
+                        Law.RECIPROCITY,
+                        reference="Sec. 2.2, joint table",
+                    )
+                    for i in range(len(rows))
+                ]
+            )
         return duals, moments
 
     def _define_duals(self, vectors: list[Any], names: list[str], latexes: list[str]) -> list[Any]:
@@ -337,10 +425,17 @@ class MotionWriter:
             others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
         for k, vector in enumerate(vectors):
             across = Cross(*others[k])
-            duals.append(book.define(
-                g.name(names[k]), across / Dot(vector, across), latexes[k],
-                f"reciprocal vector {k + 1}",
-                Law.RECIPROCITY, body=self.tip_frame(), reference="Sec. 2.3"))
+            duals.append(
+                book.define(
+                    g.name(names[k]),
+                    across / Dot(vector, across),
+                    latexes[k],
+                    f"reciprocal vector {k + 1}",
+                    Law.RECIPROCITY,
+                    body=self.tip_frame(),
+                    reference="Sec. 2.3",
+                )
+            )
         return duals
 
     def _left_out(self, joints: list[int], missing: int) -> list[tuple[Vector, list[Any]]]:
@@ -349,8 +444,9 @@ class MotionWriter:
             return []
         if self.motion.n:
             return wrenches_left_out(self.book, self.g, self.motion, joints, missing)
-        normals = directions_left_out(self.book, self.g, self.motion, joints, missing,
-                                      self.space.planar)
+        normals = directions_left_out(
+            self.book, self.g, self.motion, joints, missing, self.space.planar
+        )
         return [(normal, []) for normal in normals]
 
     def _rates(self) -> None:
@@ -360,22 +456,36 @@ class MotionWriter:
         turning: Vector = self.p.omega
         for j in extras:
             name = g.name(f"yd_{j}")
-            book.note_quantity(Quantity(name, rf"\dot y_{{{j}}}", f"rate of extra joint {j}",
-                                        "rad/s" if g.turns(j) else "m/s"))
+            book.note_quantity(
+                Quantity(
+                    name,
+                    rf"\dot y_{{{j}}}",
+                    f"rate of extra joint {j}",
+                    "rad/s" if g.turns(j) else "m/s",
+                )
+            )
             motion.qd[j] = sp.Symbol(name, real=True)
             target = target - motion.qd[j] * motion.v[j]
             if g.turns(j):
                 turning = turning - motion.qd[j] * g.e[j]
         if extras:
             target = book.define(
-                g.name("S_dot_rest"), target, r"\dot{\mathbf S}'",
+                g.name("S_dot_rest"),
+                target,
+                r"\dot{\mathbf S}'",
                 "velocity of the connection point left to the joints that are not extra",
-                Law.RATE, unit="m/s")
+                Law.RATE,
+                unit="m/s",
+            )
         for j, dual in motion.w.items():
             motion.qd[j] = book.define(
                 g.name(f"qd_{j}"),
-                Dot(dual, target) + Dot(motion.o.get(j, ZeroVector), turning), rf"\dot q_{{{j}}}", f"rate of joint {j}",
-                Law.RECIPROCITY, unit="rad/s" if g.turns(j) else "m/s")
+                Dot(dual, target) + Dot(motion.o.get(j, ZeroVector), turning),
+                rf"\dot q_{{{j}}}",
+                f"rate of joint {j}",
+                Law.RECIPROCITY,
+                unit="rad/s" if g.turns(j) else "m/s",
+            )
         self._angular_velocities()
 
     def _angular_velocities(self) -> None:
@@ -388,13 +498,24 @@ class MotionWriter:
             previous = motion.omega[g.group[j - 1]]
             frame = g.frame("axes", j)
             motion.omega[j] = book.define(
-                g.name(f"omega_{j}"), previous + motion.qd[j] * g.e[j],
-                rf"\boldsymbol\omega_{{{j}}}", f"angular velocity of link {j}", Law.RATE,
-                unit="rad/s", body=frame)
+                g.name(f"omega_{j}"),
+                previous + motion.qd[j] * g.e[j],
+                rf"\boldsymbol\omega_{{{j}}}",
+                f"angular velocity of link {j}",
+                Law.RATE,
+                unit="rad/s",
+                body=frame,
+            )
             motion.spin[j] = book.define(
-                g.name(f"W_{j}"), Compose(Skew(motion.omega[j]), Skew(motion.omega[j])),
-                rf"\mathbf W_{{{j}}}", f"centripetal tensor of link {j}", Law.DEFINITION,
-                unit="1/s^2", body=frame, symmetric=True)
+                g.name(f"W_{j}"),
+                Compose(Skew(motion.omega[j]), Skew(motion.omega[j])),
+                rf"\mathbf W_{{{j}}}",
+                f"centripetal tensor of link {j}",
+                Law.DEFINITION,
+                unit="1/s^2",
+                body=frame,
+                symmetric=True,
+            )
             motion.slide[j] = self._slide_velocity(j)
 
     def _slide_velocity(self, group: int) -> Vector:
@@ -414,21 +535,42 @@ class MotionWriter:
         motion.u_1 = ZeroVector
         if self.space.rotates:
             motion.u_1 = book.define(
-                g.name("u_1"), Cross(p.omega, Cross(p.omega, q)), r"\mathbf u_1",
-                "centripetal acceleration of the connection point", Law.RATE, unit="m/s^2",
-                body="base", forms=(p.spin @ q,), reference="Eq. 23")
+                g.name("u_1"),
+                Cross(p.omega, Cross(p.omega, q)),
+                r"\mathbf u_1",
+                "centripetal acceleration of the connection point",
+                Law.RATE,
+                unit="m/s^2",
+                body="base",
+                forms=(p.spin @ q,),
+                reference="Eq. 23",
+            )
         motion.a_p = book.define(
-            g.name("a_p"), p.t_ddot + Cross(p.alpha, q), r"\mathbf a_p",
-            "acceleration of the connection point without its centripetal part", Law.RATE,
-            unit="m/s^2", body="base", reference="Eq. 23")
+            g.name("a_p"),
+            p.t_ddot + Cross(p.alpha, q),
+            r"\mathbf a_p",
+            "acceleration of the connection point without its centripetal part",
+            Law.RATE,
+            unit="m/s^2",
+            body="base",
+            reference="Eq. 23",
+        )
         motion.unknowns.append(motion.a_p)
         writer = LinearWriter(book, g, motion)
         motion.S_ddot = book.define(
-            g.name("S_ddot"), motion.a_p + motion.u_1, r"\ddot{\mathbf S}",
-            "acceleration of the connection point", Law.RATE, unit="m/s^2", body="base",
-            reference="Eq. 23", forms=self._platform_form())
+            g.name("S_ddot"),
+            motion.a_p + motion.u_1,
+            r"\ddot{\mathbf S}",
+            "acceleration of the connection point",
+            Law.RATE,
+            unit="m/s^2",
+            body="base",
+            reference="Eq. 23",
+            forms=self._platform_form(),
+        )
         motion.known[motion.S_ddot] = linear_form(
-            motion.a_p + motion.u_1, motion.unknowns, motion.known)
+            motion.a_p + motion.u_1, motion.unknowns, motion.known
+        )
         bias = self._bias()
         self._joint_accelerations(writer, bias)
         self._angular_accelerations(writer)
@@ -455,17 +597,25 @@ class MotionWriter:
                 turned = motion.qd[j] * Cross(motion.omega[previous], g.e[j])
                 if turned != ZeroVector:
                     turned = book.define(
-                        g.name(f"zeta_{j}"), turned, rf"\boldsymbol\zeta_{{{j}}}",
-                        f"angular acceleration of link {j} from the turning of axis {j}", Law.RATE,
-                        unit="rad/s^2", body=g.frame("axes", j))
+                        g.name(f"zeta_{j}"),
+                        turned,
+                        rf"\boldsymbol\zeta_{{{j}}}",
+                        f"angular acceleration of link {j} from the turning of axis {j}",
+                        Law.RATE,
+                        unit="rad/s^2",
+                        body=g.frame("axes", j),
+                    )
                 self.coriolis[j] = turned
-                beta[j] = self._named_sum(f"beta_{j}", beta[previous] + turned,
-                                          rf"\boldsymbol\beta_{{{j}}}",
-                                          f"angular acceleration of link {j} at zero joint "
-                                          f"accelerations", g.frame("axes", j))
+                beta[j] = self._named_sum(
+                    f"beta_{j}",
+                    beta[previous] + turned,
+                    rf"\boldsymbol\beta_{{{j}}}",
+                    f"angular acceleration of link {j} at zero joint accelerations",
+                    g.frame("axes", j),
+                )
             span, omega = self.spans[j], motion.omega[j]
             centripetal = Cross(beta[j], span) + Cross(omega, Cross(omega, span))
-            coriolis = 2 * Cross(omega, motion.slide[j])
+            coriolis = Cross(omega, motion.slide[j]) * 2
             terms.extend((centripetal, coriolis))
             tensor = Skew(beta[j]) + motion.spin[j]
             forms.extend((tensor @ span if tensor != ZeroTensor else ZeroVector, coriolis))
@@ -473,16 +623,23 @@ class MotionWriter:
         if total == ZeroVector:
             return ZeroVector
         return book.define(
-            g.name("bias"), total, r"\mathfrak b",
-            "acceleration of the connection point at zero joint accelerations", Law.RATE,
-            unit="m/s^2", body=self.tip_frame(), forms=(vector_sum(forms),),
-            reference="Sec. 2.2")
+            g.name("bias"),
+            total,
+            r"\mathfrak b",
+            "acceleration of the connection point at zero joint accelerations",
+            Law.RATE,
+            unit="m/s^2",
+            body=self.tip_frame(),
+            forms=(vector_sum(forms),),
+            reference="Sec. 2.2",
+        )
 
     def _named_sum(self, stem: str, value: Vector, latex: str, title: str, frame: str) -> Vector:
         if value == ZeroVector or isinstance(value, VectorSymbol):
             return value
-        return self.book.define(self.g.name(stem), value, latex, title, Law.RATE,
-                                unit="rad/s^2", body=frame)
+        return self.book.define(
+            self.g.name(stem), value, latex, title, Law.RATE, unit="rad/s^2", body=frame
+        )
 
     def _joint_accelerations(self, writer: LinearWriter, bias: Vector) -> None:
         g, book, motion = self.g, self.book, self.motion
@@ -492,9 +649,14 @@ class MotionWriter:
             motion.unknowns.append(self.p.alpha)
         for j in [j for j in range(1, g.count + 1) if g.is_extra(j)]:
             name = g.name(f"ydd_{j}")
-            book.note_quantity(Quantity(name, rf"\ddot y_{{{j}}}",
-                                        f"acceleration of extra joint {j}",
-                                        "rad/s^2" if g.turns(j) else "m/s^2"))
+            book.note_quantity(
+                Quantity(
+                    name,
+                    rf"\ddot y_{{{j}}}",
+                    f"acceleration of extra joint {j}",
+                    "rad/s^2" if g.turns(j) else "m/s^2",
+                )
+            )
             motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
             motion.unknowns.append(motion.ydd[j])
             target = target - motion.ydd[j] * motion.v[j]
@@ -502,19 +664,30 @@ class MotionWriter:
                 turning = turning - motion.ydd[j] * g.e[j]
         if target != motion.S_ddot:
             target = writer.define(
-                "rel", target, r"\ddot{\mathbf S}'",
+                "rel",
+                target,
+                r"\ddot{\mathbf S}'",
                 "acceleration of the connection point left to the joint accelerations",
-                Law.RATE, unit="m/s^2", coefficient_latex=r"\mathbf E", body=self.tip_frame())
+                Law.RATE,
+                unit="m/s^2",
+                coefficient_latex=r"\mathbf E",
+                body=self.tip_frame(),
+            )
         motion.relative = target
         nu = self._orientation_bias()
         for j, dual in motion.w.items():
             motion.qdd[j] = writer.define(
                 f"qdd_{j}",
-                Dot(dual, target) + Dot(motion.o.get(j, ZeroVector), turning)
+                Dot(dual, target)
+                + Dot(motion.o.get(j, ZeroVector), turning)
                 + sp.Add(*(m * v for m, v in zip(motion.m.get(j, ()), nu, strict=False))),
-                rf"\ddot q_{{{j}}}", f"acceleration of joint {j}",
-                Law.RECIPROCITY, unit="rad/s^2" if g.turns(j) else "m/s^2",
-                coefficient_latex=rf"\mathbf w_{{{j}}}", reference="Eqs. 8, 9, 16")
+                rf"\ddot q_{{{j}}}",
+                f"acceleration of joint {j}",
+                Law.RECIPROCITY,
+                unit="rad/s^2" if g.turns(j) else "m/s^2",
+                coefficient_latex=rf"\mathbf w_{{{j}}}",
+                reference="Eqs. 8, 9, 16",
+            )
 
     def _orientation_bias(self) -> list[Any]:
         """Per moment direction, what its turning adds to the angular acceleration along it."""
@@ -524,13 +697,30 @@ class MotionWriter:
         found = []
         for k, ((link, platform), n) in enumerate(zip(g.pairs, motion.n, strict=True), 1):
             turning = Cross(Cross(omega, link), platform) + Cross(link, Cross(p.omega, platform))
-            rate = turning if turning == ZeroVector else book.define(
-                g.name(f"nd_m{k}"), turning, rf"\dot{{\mathbf n}}_{{m{k}}}",
-                f"rate of moment direction {k}", Law.RATE, unit="1/s", body=self.tip_frame())
-            found.append(book.define(
-                g.name(f"nu_{k}"), Dot(rate, p.omega - omega) - Dot(n, self.beta[last]),
-                rf"\nu_{{{k}}}", f"bias of the angular acceleration along moment direction {k}",
-                Law.RATE, unit="rad/s^2", reference="Sec. 2.2, joint table"))
+            rate = (
+                turning
+                if turning == ZeroVector
+                else book.define(
+                    g.name(f"nd_m{k}"),
+                    turning,
+                    rf"\dot{{\mathbf n}}_{{m{k}}}",
+                    f"rate of moment direction {k}",
+                    Law.RATE,
+                    unit="1/s",
+                    body=self.tip_frame(),
+                )
+            )
+            found.append(
+                book.define(
+                    g.name(f"nu_{k}"),
+                    Dot(rate, p.omega - omega) - Dot(n, self.beta[last]),
+                    rf"\nu_{{{k}}}",
+                    f"bias of the angular acceleration along moment direction {k}",
+                    Law.RATE,
+                    unit="rad/s^2",
+                    reference="Sec. 2.2, joint table",
+                )
+            )
         motion.nu = found
         return found
 
@@ -545,18 +735,30 @@ class MotionWriter:
             frame = g.frame("axes", j)
             rhs = previous + motion.qdd[j] * g.e[j] + self.coriolis[j]
             motion.alpha[j] = writer.define(
-                f"alpha_{j}", rhs, rf"\boldsymbol\alpha_{{{j}}}",
-                f"angular acceleration of link {j}", Law.RATE, unit="rad/s^2",
-                coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}", body=frame)
+                f"alpha_{j}",
+                rhs,
+                rf"\boldsymbol\alpha_{{{j}}}",
+                f"angular acceleration of link {j}",
+                Law.RATE,
+                unit="rad/s^2",
+                coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}",
+                body=frame,
+            )
             tensors = []
             rest = motion.known[motion.alpha[j]].remainder
             for mark, alpha in (("", motion.alpha[j]), ("_o", rest)):
                 circle = r"^{\circ}" if mark else ""
-                tensors.append(book.define(
-                    g.name(f"B_{j}") + mark, Skew(alpha) + motion.spin[j],
-                    rf"\mathbf B{circle}_{{{j}}}",
-                    f"acceleration tensor of link {j}",
-                    Law.DEFINITION, unit="1/s^2", body=frame))
+                tensors.append(
+                    book.define(
+                        g.name(f"B_{j}") + mark,
+                        Skew(alpha) + motion.spin[j],
+                        rf"\mathbf B{circle}_{{{j}}}",
+                        f"acceleration tensor of link {j}",
+                        Law.DEFINITION,
+                        unit="1/s^2",
+                        body=frame,
+                    )
+                )
             motion.acceleration_tensor[j] = (tensors[0], tensors[1])
 
     def point_acceleration(self, group: int, reach: Vector, slides: Sequence[int]) -> Any:
@@ -566,11 +768,14 @@ class MotionWriter:
         origin = motion.origin_acceleration[group]
         rest = motion.known[origin].remainder if origin in motion.known else origin
         velocity = vector_sum(motion.qd[i] * g.pitch.get(i, 1) * g.e[i] for i in slides)
-        coriolis = 2 * Cross(omega, velocity)
+        coriolis = Cross(omega, velocity) * 2
         sliding = vector_sum(motion.qdd[i] * g.pitch.get(i, 1) * g.e[i] for i in slides)
         sliding_rest = vector_sum(
             motion.known[motion.qdd[i]].remainder * g.pitch.get(i, 1) * g.e[i]
-            if motion.qdd[i] in motion.known else ZeroVector for i in slides)
+            if motion.qdd[i] in motion.known
+            else ZeroVector
+            for i in slides
+        )
         centripetal = Cross(motion.alpha[group], reach) + Cross(omega, Cross(omega, reach))
         tensor, tensor_rest = motion.acceleration_tensor[group]
         return (
@@ -585,13 +790,24 @@ class MotionWriter:
         order = list(self.spans)
         motion.origin_acceleration[order[0]] = ZeroVector
         for previous, j in zip(order, order[1:], strict=False):
-            slides = [i for i in range(1, g.count + 1) if g.group[i] == previous
-                      and (not g.turns(i) or i in g.pitch)]
+            slides = [
+                i
+                for i in range(1, g.count + 1)
+                if g.group[i] == previous and (not g.turns(i) or i in g.pitch)
+            ]
             rhs, form, rest = self.point_acceleration(previous, self.spans[previous], slides)
             if rhs == ZeroVector or isinstance(rhs, VectorSymbol):
                 motion.origin_acceleration[j] = rhs
                 continue
             motion.origin_acceleration[j] = writer.define(
-                f"a_o{j}", rhs, rf"\mathbf a_{{o{j}}}", f"acceleration of the origin of joint {j}",
-                Law.RATE, unit="m/s^2", coefficient_latex=rf"\mathbf V_{{{j}}}",
-                body=g.frame("axes", previous), forms=(form,), rest_forms=(rest,))
+                f"a_o{j}",
+                rhs,
+                rf"\mathbf a_{{o{j}}}",
+                f"acceleration of the origin of joint {j}",
+                Law.RATE,
+                unit="m/s^2",
+                coefficient_latex=rf"\mathbf V_{{{j}}}",
+                body=g.frame("axes", previous),
+                forms=(form,),
+                rest_forms=(rest,),
+            )

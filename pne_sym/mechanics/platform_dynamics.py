@@ -19,7 +19,6 @@ from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.task_space import TaskSpace
 from pne_sym.vector import (
     Axial,
-    Compose,
     Cross,
     Dot,
     Identity,
@@ -64,8 +63,9 @@ _PLATFORM = (
 class PlatformWriter:
     """Writes the platform's equations and the blocks of M, Z, H."""
 
-    def __init__(self, book: Book, space: TaskSpace, platform: PlatformMotion,
-                 legs: list[Leg]) -> None:
+    def __init__(
+        self, book: Book, space: TaskSpace, platform: PlatformMotion, legs: list[Leg]
+    ) -> None:
         self.book, self.space, self.p, self.legs = book, space, platform, legs
 
     def total(self, pick: Callable[[Leg], Any], start: Any) -> Any:
@@ -79,29 +79,52 @@ class PlatformWriter:
     def lump(self) -> None:
         """Platform inertia with the gathered masses."""
         book, p = self.book, self.p
-        book.chapter("L", "Platform inertia with the masses gathered at the connection points",
-                     _LUMPED)
+        book.chapter(
+            "L", "Platform inertia with the masses gathered at the connection points", _LUMPED
+        )
         R = p.centre
 
         def point_inertia(mass: Any, r: Vector) -> Any:
             return mass * (Dot(r, r) * Identity - Outer(r, r))
 
         self.mass = book.define(
-            "m_star", self.total(lambda leg: leg.dynamics.tip_mass, p.mass), r"M^*",
-            "mass of the platform with the gathered masses", Law.LUMPING, unit="kg",
-            parameter=True)
+            "m_star",
+            self.total(lambda leg: leg.dynamics.tip_mass, p.mass),
+            r"M^*",
+            "mass of the platform with the gathered masses",
+            Law.LUMPING,
+            unit="kg",
+            parameter=True,
+        )
         self.moment = book.define(
-            "h_star", self.total(lambda leg: leg.dynamics.tip_mass * leg.g.platform_point,
-                                 p.mass * R), r"\mathbf h^*",
-            "first moment about the platform origin", Law.LUMPING, unit="kg m", body="platform",
-            parameter=True)
+            "h_star",
+            self.total(lambda leg: leg.dynamics.tip_mass * leg.g.platform_point, p.mass * R),
+            r"\mathbf h^*",
+            "first moment about the platform origin",
+            Law.LUMPING,
+            unit="kg m",
+            body="platform",
+            parameter=True,
+        )
         inertia = p.inertia + point_inertia(p.mass, R)
         self.inertia = book.define(
-            "J_star", self.total(
-                lambda leg: point_inertia(leg.dynamics.tip_mass, leg.g.platform_point)
-                if leg.dynamics.tip_mass != 0 else ZeroTensor, inertia), r"\mathbf J^*",
-            "inertia tensor about the platform origin", Law.LUMPING, unit="kg m^2",
-            body="platform", parameter=True, symmetric=True)
+            "J_star",
+            self.total(
+                lambda leg: (
+                    point_inertia(leg.dynamics.tip_mass, leg.g.platform_point)
+                    if leg.dynamics.tip_mass != 0
+                    else ZeroTensor
+                ),
+                inertia,
+            ),
+            r"\mathbf J^*",
+            "inertia tensor about the platform origin",
+            Law.LUMPING,
+            unit="kg m^2",
+            body="platform",
+            parameter=True,
+            symmetric=True,
+        )
 
     def equilibrium(self) -> None:
         """Eq. 3 route: the generalised force that actuators and wrench must give."""
@@ -109,23 +132,50 @@ class PlatformWriter:
         book.chapter("E", "Equilibrium of the platform", _PLATFORM)
         h, omega, alpha = self.moment, p.omega, p.alpha
         self.n_newton = self.n_euler = None
-        self.relative = -p.gravity if not space.translates else book.define(
-            "a_t", p.t_ddot - p.gravity, r"\mathbf a_t",
-            "acceleration of the platform origin, less gravity", Law.RATE, unit="m/s^2",
-            body="base", reference="Eq. 32")
+        self.relative = (
+            -p.gravity
+            if not space.translates
+            else book.define(
+                "a_t",
+                p.t_ddot - p.gravity,
+                r"\mathbf a_t",
+                "acceleration of the platform origin, less gravity",
+                Law.RATE,
+                unit="m/s^2",
+                body="base",
+                reference="Eq. 32",
+            )
+        )
         if space.translates:
             rhs = self.mass * self.relative + Cross(alpha, h) + Cross(omega, Cross(omega, h))
             self.n_newton = book.define(
-                "f_p", rhs, r"\mathbf f_p", "inertia force of the platform less its weight",
-                Law.NEWTON, unit="N", body="base", reference="Eq. 32",
-                forms=self._tensor_form_newton())
+                "f_p",
+                rhs,
+                r"\mathbf f_p",
+                "inertia force of the platform less its weight",
+                Law.NEWTON,
+                unit="N",
+                body="base",
+                reference="Eq. 32",
+                forms=self._tensor_form_newton(),
+            )
         if space.rotates:
             self.n_euler = book.define(
                 "mu_p",
-                vector_sum((Cross(h, self.relative), self.inertia @ alpha,
-                            Cross(omega, self.inertia @ omega))),
-                r"\boldsymbol\mu_p", "inertia moment of the platform less that of its weight",
-                Law.EULER, unit="N m", body="platform", reference="Eq. 33")
+                vector_sum(
+                    (
+                        Cross(h, self.relative),
+                        self.inertia @ alpha,
+                        Cross(omega, self.inertia @ omega),
+                    )
+                ),
+                r"\boldsymbol\mu_p",
+                "inertia moment of the platform less that of its weight",
+                Law.EULER,
+                unit="N m",
+                body="platform",
+                reference="Eq. 33",
+            )
         self._required()
 
     def _tensor_form_newton(self) -> tuple[Any, ...]:
@@ -139,17 +189,32 @@ class PlatformWriter:
         components = self.space.components
         if self.n_newton is not None:
             force = book.define(
-                "R_t", self.total(lambda leg: -leg.dynamics.force, self.n_newton),
-                r"\mathbf R_t", "force that actuators and external wrench must give",
-                Law.ASSEMBLY, unit="N", body="base", reference="Eq. 32")
+                "R_t",
+                self.total(lambda leg: -leg.dynamics.force, self.n_newton),
+                r"\mathbf R_t",
+                "force that actuators and external wrench must give",
+                Law.ASSEMBLY,
+                unit="N",
+                body="base",
+                reference="Eq. 32",
+            )
             self._vector_output("required", force, 0)
         if self.n_euler is not None:
             moment = book.define(
-                "R_a", self.total(
-                    lambda leg: -Cross(leg.g.platform_point, leg.dynamics.force)
-                    - leg.dynamics.moment, self.n_euler),
-                r"\mathbf R_\alpha", "moment that actuators and external wrench must give",
-                Law.ASSEMBLY, unit="N m", body="base", reference="Eq. 33")
+                "R_a",
+                self.total(
+                    lambda leg: (
+                        -Cross(leg.g.platform_point, leg.dynamics.force) - leg.dynamics.moment
+                    ),
+                    self.n_euler,
+                ),
+                r"\mathbf R_\alpha",
+                "moment that actuators and external wrench must give",
+                Law.ASSEMBLY,
+                unit="N m",
+                body="base",
+                reference="Eq. 33",
+            )
             self._vector_output("required", moment, 3)
         del components
         for leg, j, rows in self._extras():
@@ -169,32 +234,62 @@ class PlatformWriter:
         book, p, space = self.book, self.p, self.space
         if space.translates:
             tt = book.define(
-                "M_tt", self.total(lambda leg: leg.dynamics.Q, self.mass * Identity),
-                r"\mathbf M_{tt}", "translational block of M", Law.ASSEMBLY, unit="kg", body="base",
-                symmetric=True, reference="Eq. 34")
+                "M_tt",
+                self.total(lambda leg: leg.dynamics.Q, self.mass * Identity),
+                r"\mathbf M_{tt}",
+                "translational block of M",
+                Law.ASSEMBLY,
+                unit="kg",
+                body="base",
+                symmetric=True,
+                reference="Eq. 34",
+            )
             self._tensor_output("M", tt, 0, 0, symmetric=True)
         if not space.rotates:
             return
         if space.translates:
             form = linear_form(Cross(p.alpha, self.moment), [p.alpha])
             coupling = self.total(
-                lambda leg: -(leg.dynamics.Q @ Skew(leg.g.platform_point))
-                - self._of_alpha(leg.dynamics.form), form.coefficients[p.alpha])
+                lambda leg: (
+                    -(leg.dynamics.Q @ Skew(leg.g.platform_point))
+                    - self._of_alpha(leg.dynamics.form)
+                ),
+                form.coefficients[p.alpha],
+            )
             ta = book.define(
-                "M_ta", coupling, r"\mathbf M_{t\alpha}", "coupling block of M", Law.RULES,
-                unit="kg m", body="base", linear=form, expanded=Cross(p.alpha, self.moment),
-                reference="Eq. 34")
+                "M_ta",
+                coupling,
+                r"\mathbf M_{t\alpha}",
+                "coupling block of M",
+                Law.RULES,
+                unit="kg m",
+                body="base",
+                linear=form,
+                expanded=Cross(p.alpha, self.moment),
+                reference="Eq. 34",
+            )
             self._tensor_output("M", ta, 0, 3, mirrored=True)
 
         def rotary(leg: Leg) -> Any:
             arm = Skew(leg.g.platform_point)
-            return (-(arm @ (leg.dynamics.Q @ arm)) - arm @ self._of_alpha(leg.dynamics.form)
-                    + self._of_a_p(leg) @ arm - self._of_alpha(leg.dynamics.moment_form))
+            return (
+                -(arm @ (leg.dynamics.Q @ arm))
+                - arm @ self._of_alpha(leg.dynamics.form)
+                + self._of_a_p(leg) @ arm
+                - self._of_alpha(leg.dynamics.moment_form)
+            )
 
         aa = book.define(
-            "M_aa", self.total(rotary, self.inertia), r"\mathbf M_{\alpha\alpha}",
-            "rotational block of M", Law.ASSEMBLY, unit="kg m^2", body="base", symmetric=True,
-            reference="Eq. 34")
+            "M_aa",
+            self.total(rotary, self.inertia),
+            r"\mathbf M_{\alpha\alpha}",
+            "rotational block of M",
+            Law.ASSEMBLY,
+            unit="kg m^2",
+            body="base",
+            symmetric=True,
+            reference="Eq. 34",
+        )
         self._tensor_output("M", aa, 3, 3, symmetric=True)
 
     def _of_alpha(self, form: Any) -> Any:
@@ -212,24 +307,54 @@ class PlatformWriter:
             rest = Cross(omega, Cross(omega, h)) - self.mass * p.gravity
             forms = (p.spin @ h - self.mass * p.gravity,) if space.rotates else ()
             base = book.define(
-                "Z_p", rest, r"\mathbf Z_p",
-                "centripetal force and weight of the platform", Law.NEWTON, unit="N", body="base",
-                forms=forms, reference="Eq. 34")
+                "Z_p",
+                rest,
+                r"\mathbf Z_p",
+                "centripetal force and weight of the platform",
+                Law.NEWTON,
+                unit="N",
+                body="base",
+                forms=forms,
+                reference="Eq. 34",
+            )
             zt = book.define(
-                "Z_t", self.total(lambda leg: leg.dynamics.U, base), r"\mathbf Z_t",
-                "translational part of Z", Law.ASSEMBLY, unit="N", body="base", reference="Eq. 34")
+                "Z_t",
+                self.total(lambda leg: leg.dynamics.U, base),
+                r"\mathbf Z_t",
+                "translational part of Z",
+                Law.ASSEMBLY,
+                unit="N",
+                body="base",
+                reference="Eq. 34",
+            )
             self._vector_output("Z", zt, 0)
         if space.rotates:
             base = book.define(
-                "Z_q", Cross(omega, self.inertia @ omega) - Cross(h, p.gravity), r"\mathbf Z_q",
-                "gyroscopic moment and moment of the weight of the platform", Law.EULER,
-                unit="N m", body="platform", reference="Eq. 34")
+                "Z_q",
+                Cross(omega, self.inertia @ omega) - Cross(h, p.gravity),
+                r"\mathbf Z_q",
+                "gyroscopic moment and moment of the weight of the platform",
+                Law.EULER,
+                unit="N m",
+                body="platform",
+                reference="Eq. 34",
+            )
             za = book.define(
-                "Z_a", self.total(
-                    lambda leg: Cross(leg.g.platform_point, leg.dynamics.U)
-                    - leg.dynamics.moment_form.remainder, base),
-                r"\mathbf Z_\alpha", "rotational part of Z", Law.ASSEMBLY, unit="N m",
-                body="base", reference="Eq. 34")
+                "Z_a",
+                self.total(
+                    lambda leg: (
+                        Cross(leg.g.platform_point, leg.dynamics.U)
+                        - leg.dynamics.moment_form.remainder
+                    ),
+                    base,
+                ),
+                r"\mathbf Z_\alpha",
+                "rotational part of Z",
+                Law.ASSEMBLY,
+                unit="N m",
+                body="base",
+                reference="Eq. 34",
+            )
             self._vector_output("Z", za, 3)
 
     def _extra_blocks(self) -> None:
@@ -246,16 +371,30 @@ class PlatformWriter:
                     self._leg_vector("M", leg, coefficient, 0, leg_rows=rows)
                 if self.space.rotates:
                     arm = book.define(
-                        g.name(f"M_ya_{j}"), Cross(q, coefficient) + turning, rf"\mathbf M_{{y\alpha,{j}}}",
+                        g.name(f"M_ya_{j}"),
+                        Cross(q, coefficient) + turning,
+                        rf"\mathbf M_{{y\alpha,{j}}}",
                         f"coupling of extra joint {j} with the rotation of the platform",
-                        Law.ASSEMBLY, body="base", reference="Eqs. 6, 7")
+                        Law.ASSEMBLY,
+                        body="base",
+                        reference="Eqs. 6, 7",
+                    )
                     self._leg_vector("M", leg, arm, 3, leg_rows=rows)
             for k, unknown in motion.ydd.items():
                 if k >= j and unknown in form.coefficients:
                     columns = self._extra_rows_of(leg, k)
-                    self.book.outputs.append(Output(
-                        "M", form.coefficients[unknown], ((0, 0),), ((0, 0),), leg.name, rows,
-                        columns, mirrored=k != j))
+                    self.book.outputs.append(
+                        Output(
+                            "M",
+                            form.coefficients[unknown],
+                            ((0, 0),),
+                            ((0, 0),),
+                            leg.name,
+                            rows,
+                            columns,
+                            mirrored=k != j,
+                        )
+                    )
 
     def _extra_rows_of(self, leg: Leg, j: int) -> tuple[int, ...]:
         return next(rows for other, k, rows in self._extras() if other is leg and k == j)
@@ -264,19 +403,27 @@ class PlatformWriter:
         """Extra joints with the rows of their coordinates, per leg."""
         start = len(self.space.components)
         order = sorted(
-            (index, j) for leg in self.legs for index in leg.g.leg_type.indices
-            for j in leg.motion.ydd)
+            (index, j)
+            for leg in self.legs
+            for index in leg.g.leg_type.indices
+            for j in leg.motion.ydd
+        )
         row = {key: start + k for k, key in enumerate(order)}
         return [
             (leg, j, tuple(row[(index, j)] for index in leg.g.leg_type.indices))
-            for leg in self.legs for j in leg.motion.ydd
+            for leg in self.legs
+            for j in leg.motion.ydd
         ]
 
     def _columns(self) -> None:
         """Columns of H: the reciprocal vectors of driven joints, and their moments."""
         order = sorted(
-            (index, j) for leg in self.legs for index in leg.g.leg_type.indices
-            for j, joint in enumerate(leg.g.leg_type.model.joints, 1) if joint.actuated)
+            (index, j)
+            for leg in self.legs
+            for index in leg.g.leg_type.indices
+            for j, joint in enumerate(leg.g.leg_type.model.joints, 1)
+            if joint.actuated
+        )
         column = {key: k for k, key in enumerate(order)}
         for leg in self.legs:
             for j, joint in enumerate(leg.g.leg_type.model.joints, 1):
@@ -295,48 +442,80 @@ class PlatformWriter:
         for k, other, rows in self._extras():
             if k is not leg:
                 continue
-            value = sp.S.One if other == j else (
-                -Dot(motion.w[j], motion.v[other]) if j in motion.w else sp.S.Zero)
+            value = (
+                sp.S.One
+                if other == j
+                else (-Dot(motion.w[j], motion.v[other]) if j in motion.w else sp.S.Zero)
+            )
             if other != j and j in motion.o and g.turns(other):
                 value = value - Dot(motion.o[j], g.e[other])
             if value != 0:
-                book.outputs.append(Output(
-                    "H", value, ((0, 0),), ((0, 0),), leg.name, rows, places))
+                book.outputs.append(
+                    Output("H", value, ((0, 0),), ((0, 0),), leg.name, rows, places)
+                )
 
-    def _wrench_rows(self, array: str, leg: Leg, wrench: tuple[Any, Any],
-                     places: tuple[int, ...]) -> None:
+    def _wrench_rows(
+        self, array: str, leg: Leg, wrench: tuple[Any, Any], places: tuple[int, ...]
+    ) -> None:
         """Force, and moment where some leg transmits one, along rows of an array."""
         for first, part in zip((0, 3), wrench, strict=True):
             if part != ZeroVector:
-                self.book.outputs.append(Output(
-                    array, part, ((0, 0),), tuple((c, first + c) for c in range(3)), leg.name,
-                    places))
+                self.book.outputs.append(
+                    Output(
+                        array,
+                        part,
+                        ((0, 0),),
+                        tuple((c, first + c) for c in range(3)),
+                        leg.name,
+                        places,
+                    )
+                )
 
-    def _force_column(self, array: str, leg: Leg, wrench: tuple[Any, Any], stem: str, latex: str,
-                      places: tuple[int, ...]) -> None:
+    def _force_column(
+        self,
+        array: str,
+        leg: Leg,
+        wrench: tuple[Any, Any],
+        stem: str,
+        latex: str,
+        places: tuple[int, ...],
+    ) -> None:
         w, o = wrench
         if self.space.translates:
             self._leg_vector(array, leg, w, 0, leg_columns=places)
         if self.space.rotates:
             moment = self.book.define(
-                leg.g.name(stem), Cross(leg.g.platform_point, w) + o, latex,
+                leg.g.name(stem),
+                Cross(leg.g.platform_point, w) + o,
+                latex,
                 "moment of the column's unit force about the platform origin",
-                Law.ASSEMBLY, unit="m", body="base", reference="Eq. 34")
+                Law.ASSEMBLY,
+                unit="m",
+                body="base",
+                reference="Eq. 34",
+            )
             self._leg_vector(array, leg, moment, 3, leg_columns=places)
 
     def _constraint_columns(self) -> None:
         """Columns of Hk: the directions that legs leave out (Eq. 36)."""
-        order = sorted((index, k) for leg in self.legs for index in leg.g.leg_type.indices
-                       for k in range(len(leg.motion.normals)))
+        order = sorted(
+            (index, k)
+            for leg in self.legs
+            for index in leg.g.leg_type.indices
+            for k in range(len(leg.motion.normals))
+        )
         column = {key: c for c, key in enumerate(order)}
         for leg in self.legs:
             for k, wrench in enumerate(leg.motion.normals):
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
-                self._force_column("Hk", leg, wrench, f"Hk_a_{k + 1}",
-                                   rf"\mathbf H_{{k\alpha,{k + 1}}}", places)
+                self._force_column(
+                    "Hk", leg, wrench, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
+                )
                 self._constraint(leg, k, wrench, places)
 
-    def _constraint(self, leg: Leg, k: int, wrench: tuple[Any, Any], places: tuple[int, ...]) -> None:
+    def _constraint(
+        self, leg: Leg, k: int, wrench: tuple[Any, Any], places: tuple[int, ...]
+    ) -> None:
         """The constraint, and its second derivative (Eq. 37)."""
         book, g, motion = self.book, leg.g, leg.motion
         normal, moment = wrench
@@ -346,16 +525,29 @@ class PlatformWriter:
             (pair,), (nu,) = g.pairs, motion.nu
             miss, turning = -amount * Dot(*pair), amount * nu
         gap = book.define(
-            g.name(f"phi_c{k + 1}"), miss, rf"\phi_{{{k + 1}}}",
+            g.name(f"phi_c{k + 1}"),
+            miss,
+            rf"\phi_{{{k + 1}}}",
             "distance by which the leg misses the connection point, along a direction left out",
-            Law.LOOP_CLOSURE, unit="m", reference="Eq. 37")
+            Law.LOOP_CLOSURE,
+            unit="m",
+            reference="Eq. 37",
+        )
         self._leg_scalar("constraints", leg, gap, places)
-        rest = motion.known[motion.relative].remainder if motion.relative in motion.known else (
-            motion.relative)
+        rest = (
+            motion.known[motion.relative].remainder
+            if motion.relative in motion.known
+            else (motion.relative)
+        )
         bias = book.define(
-            g.name(f"gamma_c{k + 1}"), Dot(normal, rest) + turning, rf"\gamma_{{{k + 1}}}",
+            g.name(f"gamma_c{k + 1}"),
+            Dot(normal, rest) + turning,
+            rf"\gamma_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
-            Law.LOOP_CLOSURE, unit="m/s^2", reference="Eq. 37")
+            Law.LOOP_CLOSURE,
+            unit="m/s^2",
+            reference="Eq. 37",
+        )
         self._leg_scalar("constraint_bias", leg, bias, places)
         self._wrench_rows("constraint_direction", leg, wrench, places)
 
@@ -363,27 +555,63 @@ class PlatformWriter:
 
     def _places(self, first: int) -> tuple[tuple[int, int], ...]:
         """(component, position) of the linear (0) or angular (3) components."""
-        return tuple((c - first, position) for position, c in enumerate(self.space.components)
-                     if first <= c < first + 3)
+        return tuple(
+            (c - first, position)
+            for position, c in enumerate(self.space.components)
+            if first <= c < first + 3
+        )
 
     def _vector_output(self, array: str, value: Any, first: int) -> None:
         self.book.outputs.append(Output(array, value, self._places(first)))
 
-    def _tensor_output(self, array: str, value: Any, row: int, column: int, *,
-                       mirrored: bool = False, symmetric: bool = False) -> None:
-        self.book.outputs.append(Output(
-            array, value, self._places(row), self._places(column), mirrored=mirrored,
-            symmetric=symmetric))
+    def _tensor_output(
+        self,
+        array: str,
+        value: Any,
+        row: int,
+        column: int,
+        *,
+        mirrored: bool = False,
+        symmetric: bool = False,
+    ) -> None:
+        self.book.outputs.append(
+            Output(
+                array,
+                value,
+                self._places(row),
+                self._places(column),
+                mirrored=mirrored,
+                symmetric=symmetric,
+            )
+        )
 
-    def _leg_vector(self, array: str, leg: Leg, value: Any, first: int, *,
-                    leg_rows: tuple[int, ...] = (), leg_columns: tuple[int, ...] = ()) -> None:
+    def _leg_vector(
+        self,
+        array: str,
+        leg: Leg,
+        value: Any,
+        first: int,
+        *,
+        leg_rows: tuple[int, ...] = (),
+        leg_columns: tuple[int, ...] = (),
+    ) -> None:
         if leg_rows:  # laid along a row of M, and its mirror
-            self.book.outputs.append(Output(
-                array, value, ((0, 0),), self._places(first), leg.name, leg_rows, (),
-                mirrored=True))
+            self.book.outputs.append(
+                Output(
+                    array,
+                    value,
+                    ((0, 0),),
+                    self._places(first),
+                    leg.name,
+                    leg_rows,
+                    (),
+                    mirrored=True,
+                )
+            )
         else:
-            self.book.outputs.append(Output(
-                array, value, self._places(first), ((0, 0),), leg.name, (), leg_columns))
+            self.book.outputs.append(
+                Output(array, value, self._places(first), ((0, 0),), leg.name, (), leg_columns)
+            )
 
     def _leg_scalar(self, array: str, leg: Leg, value: Any, rows: tuple[int, ...]) -> None:
         self.book.outputs.append(Output(array, value, ((0, 0),), (), leg.name, rows))

@@ -61,19 +61,37 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
     book.chapter("P", "Platform motion", _TEXT)
     if space.rotates:
         spin = book.define(
-            "W_p", Compose(Skew(vectors["omega"]), Skew(vectors["omega"])),
-            r"\mathbf W_p", "centripetal tensor of the platform",
-            Law.DEFINITION, unit="1/s^2", body="base", symmetric=True,
+            "W_p",
+            Compose(Skew(vectors["omega"]), Skew(vectors["omega"])),
+            r"\mathbf W_p",
+            "centripetal tensor of the platform",
+            Law.DEFINITION,
+            unit="1/s^2",
+            body="base",
+            symmetric=True,
         )
         tensor = book.define(
-            "B_p", Skew(vectors["alpha"]) + spin, r"\mathbf B_p",
+            "B_p",
+            Skew(vectors["alpha"]) + spin,
+            r"\mathbf B_p",
             "acceleration tensor of the platform",
-            Law.DEFINITION, unit="1/s^2", body="base",
+            Law.DEFINITION,
+            unit="1/s^2",
+            body="base",
         )
     mass, centre, inertia = _inertia(book, manipulator, space)
     return PlatformMotion(
-        vectors["t"], vectors["t_dot"], vectors["t_ddot"], vectors["omega"], vectors["alpha"],
-        vectors["g"], spin, tensor, mass, centre, inertia,
+        vectors["t"],
+        vectors["t_dot"],
+        vectors["t_ddot"],
+        vectors["omega"],
+        vectors["alpha"],
+        vectors["g"],
+        spin,
+        tensor,
+        mass,
+        centre,
+        inertia,
     )
 
 
@@ -104,55 +122,124 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
             given[stem] = ZeroVector
             return
         components = [
-            sp.Symbol(f"{stem}_{axes[i]}", real=True) if first + i in space.components else sp.S.Zero
+            sp.Symbol(f"{stem}_{axes[i]}", real=True)
+            if first + i in space.components
+            else sp.S.Zero
             for i in range(3)
         ]
         symbol = VectorSymbol(stem)
-        given[stem] = book.give(symbol, "base", components,
-                                Quantity(stem, latex, meaning, unit, "base"))
+        given[stem] = book.give(
+            symbol, "base", components, Quantity(stem, latex, meaning, unit, "base")
+        )
 
     linear, angular = space.translates, space.rotates
     if linear:
         give("t", r"\mathbf t", "position of the platform origin", "m", True, 0)
     else:
-        centre = book.parameters.add(ParameterField(
-            "fixed_centre", None, (3,), "m", "fixed centre of rotation, base frame",
-            ("fixed_centre",), np.array(manipulator.fixed_centre, dtype=float)))
-        given["t"] = book.give(VectorSymbol("t"), "base", centre, Quantity(
-            "t", r"\mathbf t", "fixed centre of rotation", "m", "base", parameter=True))
+        centre = book.parameters.add(
+            ParameterField(
+                "fixed_centre",
+                None,
+                (3,),
+                "m",
+                "fixed centre of rotation, base frame",
+                ("fixed_centre",),
+                np.array(manipulator.fixed_centre, dtype=float),
+            )
+        )
+        given["t"] = book.give(
+            VectorSymbol("t"),
+            "base",
+            centre,
+            Quantity("t", r"\mathbf t", "fixed centre of rotation", "m", "base", parameter=True),
+        )
     give("t_dot", r"\dot{\mathbf t}", "velocity of the platform origin", "m/s", linear, 0)
     give("t_ddot", r"\ddot{\mathbf t}", "acceleration of the platform origin", "m/s^2", linear, 0)
     give("omega", r"\boldsymbol\omega", "angular velocity of the platform", "rad/s", angular, 3)
-    give("alpha", r"\boldsymbol\alpha", "angular acceleration of the platform", "rad/s^2", angular, 3)
-    gravity = book.parameters.add(ParameterField(
-        "gravity", None, (3,), "m/s^2", "acceleration of gravity, base frame", ("gravity",),
-        np.array(manipulator.gravity, dtype=float), (2,) if space.planar else ()))
-    given["g"] = book.give(VectorSymbol("g"), "base", gravity, Quantity(
-        "g", r"\mathbf g", "acceleration of gravity", "m/s^2", "base", parameter=True))
+    give(
+        "alpha", r"\boldsymbol\alpha", "angular acceleration of the platform", "rad/s^2", angular, 3
+    )
+    gravity = book.parameters.add(
+        ParameterField(
+            "gravity",
+            None,
+            (3,),
+            "m/s^2",
+            "acceleration of gravity, base frame",
+            ("gravity",),
+            np.array(manipulator.gravity, dtype=float),
+            (2,) if space.planar else (),
+        )
+    )
+    given["g"] = book.give(
+        VectorSymbol("g"),
+        "base",
+        gravity,
+        Quantity("g", r"\mathbf g", "acceleration of gravity", "m/s^2", "base", parameter=True),
+    )
     return given
 
 
 def _inertia(book: Book, manipulator: Manipulator, space: TaskSpace) -> tuple[Any, Any, Any]:
     platform, table = manipulator.platform, book.parameters
-    (mass,) = table.add(ParameterField(
-        "platform_mass", None, (), "kg", "mass of the platform", ("platform.mass",),
-        np.array(platform.mass)))
-    centre = table.add(ParameterField(
-        "platform_centre_of_mass", None, (3,), "m", "centre of mass, platform frame",
-        ("platform.centre_of_mass",), np.array(platform.centre_of_mass, dtype=float),
-        (2,) if space.planar else ()))
-    book.note_quantity(Quantity("platform_mass", "M_p", "mass of the platform", "kg",
-                                parameter=True))
-    R = book.give(VectorSymbol("R"), "platform", centre, Quantity(
-        "R", r"\mathbf R", "platform origin to centre of mass", "m", "platform", parameter=True))
-    entries = table.add(ParameterField(
-        "platform_inertia", None, (3, 3), "kg m^2",
-        "inertia tensor about the centre of mass, platform axes", ("platform.inertia",),
-        np.array(platform.inertia, dtype=float)))
+    (mass,) = table.add(
+        ParameterField(
+            "platform_mass",
+            None,
+            (),
+            "kg",
+            "mass of the platform",
+            ("platform.mass",),
+            np.array(platform.mass),
+        )
+    )
+    centre = table.add(
+        ParameterField(
+            "platform_centre_of_mass",
+            None,
+            (3,),
+            "m",
+            "centre of mass, platform frame",
+            ("platform.centre_of_mass",),
+            np.array(platform.centre_of_mass, dtype=float),
+            (2,) if space.planar else (),
+        )
+    )
+    book.note_quantity(
+        Quantity("platform_mass", "M_p", "mass of the platform", "kg", parameter=True)
+    )
+    R = book.give(
+        VectorSymbol("R"),
+        "platform",
+        centre,
+        Quantity(
+            "R", r"\mathbf R", "platform origin to centre of mass", "m", "platform", parameter=True
+        ),
+    )
+    entries = table.add(
+        ParameterField(
+            "platform_inertia",
+            None,
+            (3, 3),
+            "kg m^2",
+            "inertia tensor about the centre of mass, platform axes",
+            ("platform.inertia",),
+            np.array(platform.inertia, dtype=float),
+        )
+    )
     inertia = book.give(
-        TensorSymbol("I_p", True), "platform", symmetric_entries(entries, space.planar),
-        Quantity("I_p", r"\mathbf I_p", "inertia tensor of the platform about its centre of mass",
-                 "kg m^2", "platform", parameter=True))
+        TensorSymbol("I_p", True),
+        "platform",
+        symmetric_entries(entries, space.planar),
+        Quantity(
+            "I_p",
+            r"\mathbf I_p",
+            "inertia tensor of the platform about its centre of mass",
+            "kg m^2",
+            "platform",
+            parameter=True,
+        ),
+    )
     return mass, R, inertia
 
 

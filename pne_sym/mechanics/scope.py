@@ -12,8 +12,10 @@ from pne_sym.model.manipulator import JointKind, Leg, Manipulator, PlatformJoint
 
 Array = NDArray[np.float64]
 _MOMENTS = {  # moments that a platform joint transmits, in space
-    PlatformJointKind.SPHERICAL: 0, PlatformJointKind.UNIVERSAL: 1,
-    PlatformJointKind.REVOLUTE: 2, PlatformJointKind.RIGID: 3,
+    PlatformJointKind.SPHERICAL: 0,
+    PlatformJointKind.UNIVERSAL: 1,
+    PlatformJointKind.REVOLUTE: 2,
+    PlatformJointKind.RIGID: 3,
 }
 _DEPENDENT = 1e-9  # smallest relative singular value of independent freedoms
 
@@ -32,33 +34,42 @@ def check_scope(manipulator: Manipulator, leg_type: LegType, space: TaskSpace) -
     most = (2 if space.planar else 3) + moments
     if len(freedoms) > most:
         raise SpecError(
-            manipulator.name, f"legs[{index}].joints",
+            manipulator.name,
+            f"legs[{index}].joints",
             f"{len(freedoms)} freedoms where the platform joint leaves {most} to be determined",
-            f"at most {most} joints, or the surplus ones marked extra = true")
+            f"at most {most} joints, or the surplus ones marked extra = true",
+        )
     if not moments:
         _check_independent(manipulator, leg_type, freedoms, planar=space.planar)
 
 
-def _check_independent(manipulator: Manipulator, leg_type: LegType, freedoms: list[int], *,
-                       planar: bool) -> None:
+def _check_independent(
+    manipulator: Manipulator, leg_type: LegType, freedoms: list[int], *, planar: bool
+) -> None:
     """Refuse a leg whose freedoms are dependent at home."""
     starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
     for index in leg_type.indices:
         leg = manipulator.legs[index]
-        q = np.array(manipulator.home.q[starts[index]:starts[index + 1]])
+        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
         columns = _velocity_vectors(leg, q)[:, freedoms]
         columns = columns[:2] if planar else columns
         sizes = np.linalg.norm(columns, axis=0)
         if not len(freedoms):
-            raise SpecError(manipulator.name, f"legs[{index}].joints", "no joint left to solve for",
-                            "at least one joint that is not extra")
+            raise SpecError(
+                manipulator.name,
+                f"legs[{index}].joints",
+                "no joint left to solve for",
+                "at least one joint that is not extra",
+            )
         values = np.linalg.svd(columns / np.where(sizes > 0, sizes, 1.0), compute_uv=False)
         if np.min(sizes) == 0.0 or values[-1] < _DEPENDENT:
             raise SpecError(
-                manipulator.name, f"legs[{index}]",
+                manipulator.name,
+                f"legs[{index}]",
                 "the leg is singular at home: its freedoms move the connection point along "
-                "dependent directions", "a home position off the singularity, or the superfluous "
-                "joint marked extra = true")
+                "dependent directions",
+                "a home position off the singularity, or the superfluous joint marked extra = true",
+            )
 
 
 def _velocity_vectors(leg: Leg, q: Array) -> Array:

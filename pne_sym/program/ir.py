@@ -138,8 +138,13 @@ class Counts:
         return self.mul + self.add + self.div + self.sqrt
 
     def __add__(self, other: Counts) -> Counts:
-        return Counts(self.mul + other.mul, self.add + other.add, self.div + other.div,
-                      self.sqrt + other.sqrt, self.trig + other.trig)
+        return Counts(
+            self.mul + other.mul,
+            self.add + other.add,
+            self.div + other.div,
+            self.sqrt + other.sqrt,
+            self.trig + other.trig,
+        )
 
     def times(self, n: int) -> Counts:
         """n times these operations."""

@@ -8,12 +8,12 @@ Nothing is ever expanded into components here.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 from sympy.core.symbol import Str
 
-Scalar = sp.Expr
+Scalar: TypeAlias = Any
 
 
 class _Printable:
@@ -130,7 +130,7 @@ class VectorScale(Vector):
 class Cross(Vector):
     """The cross product a x b in space."""
 
-    def __new__(cls, a: Vector, b: Vector) -> Vector:  # type: ignore[misc]
+    def __new__(cls, a: Vector, b: Vector) -> Vector:
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
         if ZeroVector in (a, b) or a == b:
@@ -141,7 +141,7 @@ class Cross(Vector):
 class Perp(Vector):
     """A vector of the plane turned by +90 degrees."""
 
-    def __new__(cls, a: Vector) -> Vector:  # type: ignore[misc]
+    def __new__(cls, a: Vector) -> Vector:
         if a == ZeroVector:
             return ZeroVector
         factor, a = split_scale(a)
@@ -184,7 +184,7 @@ class TensorScale(Tensor):
 class Skew(Tensor):
     """The tensor of the cross product: Skew(a) b = a x b."""
 
-    def __new__(cls, a: Vector) -> Tensor:  # type: ignore[misc]
+    def __new__(cls, a: Vector) -> Tensor:
         if a == ZeroVector:
             return ZeroTensor
         factor, a = split_scale(a)
@@ -194,7 +194,7 @@ class Skew(Tensor):
 class Outer(Tensor):
     """The tensor product a b^T: (a b^T) c = a (b . c)."""
 
-    def __new__(cls, a: Vector, b: Vector) -> Tensor:  # type: ignore[misc]
+    def __new__(cls, a: Vector, b: Vector) -> Tensor:
         if ZeroVector in (a, b):
             return ZeroTensor
         factor_a, a = split_scale(a)
@@ -209,7 +209,7 @@ class Compose(Tensor):
 class Transpose(Tensor):
     """The transpose of a tensor."""
 
-    def __new__(cls, a: Tensor) -> Tensor:  # type: ignore[misc]
+    def __new__(cls, a: Tensor) -> Tensor:
         if a in (ZeroTensor, Identity) or (isinstance(a, TensorSymbol) and a.is_symmetric):
             return a
         factor, a = split_tensor_scale(a)
@@ -239,7 +239,7 @@ class _VectorScalar(_Printable, sp.Expr):
 class Dot(_VectorScalar):
     """The scalar product a . b."""
 
-    def __new__(cls, a: Vector, b: Vector) -> Scalar:  # type: ignore[misc]
+    def __new__(cls, a: Vector, b: Vector) -> Scalar:
         if ZeroVector in (a, b):
             return sp.S.Zero
         factor_a, a = split_scale(a)
@@ -250,7 +250,7 @@ class Dot(_VectorScalar):
 class PlaneCross(_VectorScalar):
     """The cross product a x b = a_1 b_2 - a_2 b_1 of two vectors of the plane."""
 
-    def __new__(cls, a: Vector, b: Vector) -> Scalar:  # type: ignore[misc]
+    def __new__(cls, a: Vector, b: Vector) -> Scalar:
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
         if ZeroVector in (a, b) or a == b:
