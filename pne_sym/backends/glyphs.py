@@ -63,19 +63,20 @@ class Glyph:
     def raised(self, exponent: str) -> str:
         """To a power, in brackets where a superscript stands already."""
         if self.sup:
-            return f"({self})^{_braced(exponent)}"
+            return f"({self})^{braced(exponent)}"
         return str(replace(self, sup=exponent))
 
     def __str__(self) -> str:
         text = self.base
         if self.sub:
-            text += f"_{_braced(self.sub)}"
+            text += f"_{braced(self.sub)}"
         if self.sup:
-            text += f"^{_braced(self.sup)}"
+            text += f"^{braced(self.sup)}"
         return text
 
 
-def _braced(script: str) -> str:
+def braced(script: str) -> str:
+    """The argument of a script: one character, or in braces."""
     return script if len(script) == 1 else f"{{{script}}}"
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.backends.glyphs import Glyph
+from pne_sym.backends.glyphs import Glyph, braced
 from pne_sym.backends.terms import (
     ATOM,
     CROSS,
@@ -32,22 +32,22 @@ class LatexPrinter:
 
     Args:
         symbols: LaTeX by name.
-        per_leg: names that stand for one value per leg; inside a sum over legs
-            they carry the leg's index.
-        legs: leg type -> LaTeX of what the index of a sum runs over.
+        per_leg: names that stand for one value per leg -> leg type; inside a sum
+            over legs they carry the leg's index.
+        legs: leg type -> index of its legs.
         indexed: names per leg carry the index everywhere.
     """
 
     def __init__(
         self,
         symbols: Mapping[str, str],
-        per_leg: frozenset[str] = frozenset(),
+        per_leg: Mapping[str, str] | None = None,
         legs: Mapping[str, str] | None = None,
         *,
         indexed: bool = False,
     ) -> None:
         self.symbols = symbols
-        self.per_leg = per_leg
+        self.per_leg = dict(per_leg or {})
         self.legs = dict(legs or {})
         self.indexed = indexed
 
@@ -68,9 +68,14 @@ class LatexPrinter:
             content, primitive = expr.primitive()
             if content != 1:
                 return (self._scaled(content, primitive),)
-            found = [self._term(arg) for arg in sp.ordered(expr.args)]
+            found = [self._term(arg) for arg in sorted(sp.ordered(expr.args), key=self._place)]
             return tuple(sorted(found, key=lambda term: term.negative))
         return (self._term(expr),)
+
+    def _place(self, expr: Any) -> int:
+        """Sums over legs stand last, in the order of the leg types."""
+        sums = list(sp.sympify(expr).atoms(n.LegSum))
+        return list(self.legs).index(str(sums[0].args[1])) if sums and self.legs else -1
 
     def glyph(self, expr: Any) -> Glyph:
         """A symbol's LaTeX, taken apart.
@@ -83,7 +88,12 @@ class LatexPrinter:
     def glyph_of(self, name: str) -> Glyph:
         """The LaTeX of a name, taken apart."""
         glyph = Glyph.of(self.symbols[name])
-        return glyph.indexed("i") if self.indexed and name in self.per_leg else glyph
+        if self.indexed and name in self.per_leg:
+            return glyph.indexed(self._index(self.per_leg[name]))
+        return glyph
+
+    def _index(self, leg_type: str) -> str:
+        return self.legs.get(leg_type, "i")
 
     # ---- terms and factors -------------------------------------------------------------
 
@@ -190,8 +200,7 @@ class LatexPrinter:
         body = join_terms(terms)
         if len(terms) > 1:
             body = brackets(body)
-        index = self.legs.get(str(leg_type), "i")
-        return Term(rf"\sum_{{{index}}} {body}", negative, CROSS)
+        return Term(rf"\sum_{braced(self._index(str(leg_type)))} {body}", negative, CROSS)
 
     # ---- products with scalar factors -----------------------------------------------------
 

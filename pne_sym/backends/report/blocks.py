@@ -9,13 +9,15 @@ import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
+from pne_sym.backends.report.markdown import inline
+from pne_sym.backends.report.names import leg_indices, leg_title
 from pne_sym.backends.report.view import Statement
 from pne_sym.derivation import Chapter, Derivation, Output
 from pne_sym.vector import Tensor, Vector
 
 Key = tuple[int, ...]
 ARRAYS = (
-    ("M", r"\mathbf M(X)", "The mass matrix, symmetric and positive definite"),
+    ("M", r"\mathbf M(X)", "The mass matrix, symmetric"),
     ("Z", r"\mathbf Z(X,V)", "Centrifugal, Coriolis, gyroscopic terms and weight"),
     (
         "H",
@@ -53,8 +55,19 @@ def block_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statemen
         outputs = [o for o in derivation.outputs if o.array == array]
         if outputs:
             grid = _Grid(outputs, printer.with_index())
-            note = " Index $`i`$ stands for every leg." if any(o.leg_type for o in outputs) else ""
+            note = _index_note(derivation, outputs)
             yield Statement(f"**{array}.** {words}.{note}", grid.lines(latex))
+
+
+def _index_note(derivation: Derivation, outputs: list[Output]) -> str:
+    """What the indices of legs stand for."""
+    letters = leg_indices(derivation)
+    titles = {info.name: leg_title(info) for info in derivation.leg_types}
+    present = dict.fromkeys(o.leg_type for o in outputs if o.leg_type)
+    if not present:
+        return ""
+    words = " and ".join(f"{inline(letters[t])} for every {titles[t]} leg" for t in present)
+    return f" Entries with an index stand there once for each leg: {words}."
 
 
 class _Grid:
@@ -98,13 +111,16 @@ class _Grid:
         dots = all(column in self.per_leg for column in columns) and columns != [()]
         lines = [f"{latex} =", r"\begin{bmatrix}"]
         for k, row in enumerate(rows):
-            cells = [self.cells.get((row, column), r"\mathbf 0") for column in columns]
+            cells = [self.cells.get((row, column), self._zero(row, column)) for column in columns]
             if dots:
                 cells = [r"\cdots", *(part for cell in cells for part in (cell, r"\cdots"))]
             lines += [cells[0], *(f"& {cell}" for cell in cells[1:])]
             if k < len(rows) - 1:
                 lines[-1] += r" \\"
         return (*lines, r"\end{bmatrix}")
+
+    def _zero(self, row: Key, column: Key) -> str:
+        return "0" if row in self.per_leg and column in self.per_leg else r"\mathbf 0"
 
     def _order(self, key: Key) -> tuple[int, int]:
         return (key in self.per_leg, min(key, default=0))

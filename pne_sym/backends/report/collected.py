@@ -6,22 +6,16 @@ they are put together again, for the reader to see what belongs together.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
 
+from pne_sym.backends.latex import LatexPrinter
+from pne_sym.backends.terms import Term
 from pne_sym.derivation import Derivation, Equation, Law, names_in
-from pne_sym.vector import (
-    Dot,
-    LinearForm,
-    Tensor,
-    TensorSymbol,
-    Vector,
-    VectorSymbol,
-    linear_form,
-)
+from pne_sym.vector import Dot, LinearForm, Tensor, Vector, VectorSymbol, linear_form
 from pne_sym.vector.linear import NotLinearError
 
 
@@ -45,33 +39,38 @@ def collect(derivation: Derivation) -> Collected:
     result = Collected()
     for info in derivation.leg_types:
         equations = [e for c in derivation.chapters if c.leg_type == info.name for e in c.equations]
-        result.unknowns[info.name] = unknowns = tuple(_unknowns(equations, info.name))
+        unknowns = tuple(_unknowns(derivation, equations, info.name))
+        result.unknowns[info.name] = unknowns
         known: dict[Any, LinearForm] = {}
-        for equation in equations:
-            parts = [e for e in equations if e.expanded is not None and e.expanded == equation.rhs]
+        for k, equation in enumerate(equations):
             if equation.law is Law.RULES or equation.lhs in unknowns:
                 continue
+            parts = _parts(equations, k)
             form = _form(equation.rhs, unknowns, known)
-            if form is None or not form.coefficients:
+            if form is None or not (form.coefficients or parts):
                 continue
-            for part in parts:
-                result.origin[part.id] = equation
-            named = LinearForm(
-                {x: _named(value, parts) for x, value in form.coefficients.items()},
-                _named(form.remainder, parts),
-                form.steps,
-            )
+            result.origin.update({part.id: equation for part in parts})
+            named = _named(form, parts)
             known[equation.lhs] = result.forms[equation.name] = named
     return result
 
 
-def _unknowns(equations: list[Equation], leg_type: str) -> Iterator[Any]:
-    for equation in equations:
-        if equation.name in ("a_p", f"a_p_{leg_type}"):
-            yield equation.lhs
+def _unknowns(derivation: Derivation, equations: list[Equation], leg_type: str) -> Iterator[Any]:
+    """Accelerations: of the connection point, of the platform's turning, of extra joints."""
+    yield from (e.lhs for e in equations if e.name in ("a_p", f"a_p_{leg_type}"))
+    yield from (g.symbol for g in derivation.givens if g.symbol.name == "alpha")
     names = sorted({n for e in equations for n in names_in(e.rhs) if n.startswith("ydd_")})
-    for name in names:
-        yield sp.Symbol(name, real=True)
+    yield from (sp.Symbol(name, real=True) for name in names)
+
+
+def _parts(equations: list[Equation], at: int) -> list[Equation]:
+    """The equations after one that name its coefficients and its remainder."""
+    parts = []
+    for equation in equations[at + 1 :]:
+        if equation.law is not Law.RULES or equation.expanded != equations[at].rhs:
+            break
+        parts.append(equation)
+    return parts
 
 
 def _form(rhs: Any, unknowns: tuple[Any, ...], known: dict[Any, LinearForm]) -> LinearForm | None:
@@ -83,28 +82,34 @@ def _form(rhs: Any, unknowns: tuple[Any, ...], known: dict[Any, LinearForm]) -> 
         return None
 
 
-def _named(value: Any, parts: list[Equation]) -> Any:
-    """The name that one of the equations gives to a value."""
-    return next((e.lhs for e in parts if e.rhs == value), value)
+def _named(form: LinearForm, parts: list[Equation]) -> LinearForm:
+    """A form with its coefficients and remainder under the names that equations give them."""
+    names = {e.rhs: e.lhs for e in parts}
+    coefficients = {x: names.get(value, value) for x, value in form.coefficients.items()}
+    rest = [e.lhs for e in parts if e.lhs not in coefficients.values()]
+    return LinearForm(coefficients, rest[-1] if rest else form.remainder, form.steps)
 
 
-def collected_sum(form: LinearForm) -> Any:
-    """Coefficients times accelerations plus remainder, as one expression."""
-    total: Any = None
-    for unknown, coefficient in form.coefficients.items():
-        part = _times(coefficient, unknown)
-        total = part if total is None else total + part
-    return total + form.remainder if total is not None else form.remainder
+def renamed(form: LinearForm, names: Mapping[Any, Any]) -> LinearForm:
+    """A form with other names for its coefficients and remainder."""
+    coefficients = {x: names.get(c, c) for x, c in form.coefficients.items()}
+    return LinearForm(coefficients, names.get(form.remainder, form.remainder))
 
 
-def _times(coefficient: Any, unknown: Any) -> Any:
-    if isinstance(unknown, VectorSymbol):
-        if isinstance(coefficient, Vector):
-            return Dot(coefficient, unknown)
-        return coefficient @ unknown
-    return coefficient * unknown
+def collected_terms(form: LinearForm, printer: LatexPrinter) -> tuple[Term, ...]:
+    """Coefficients times accelerations, then the remainder."""
+    terms = [_times(value, unknown, printer) for unknown, value in form.coefficients.items()]
+    if form.remainder != 0 and (not isinstance(form.remainder, Vector) or form.remainder.args):
+        terms.extend(printer.terms(form.remainder))
+    return tuple(terms)
 
 
-def is_name(value: Any) -> bool:
-    """Whether a value is a symbol."""
-    return isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol)
+def _times(coefficient: Any, unknown: Any, printer: LatexPrinter) -> Term:
+    if not isinstance(unknown, VectorSymbol):
+        text = printer.factor(coefficient)
+        return Term(
+            rf"{text}\,{printer.doprint(unknown)}" if text != "1" else printer.doprint(unknown)
+        )
+    if isinstance(coefficient, Vector):
+        return printer.terms(Dot(coefficient, unknown))[0]
+    return printer.terms(coefficient @ unknown)[0]

@@ -6,13 +6,15 @@ from collections.abc import Iterator
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.latex import LatexPrinter, Term
+from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.blocks import block_statements, defines_blocks
-from pne_sym.backends.report.collected import Collected, collected_sum
+from pne_sym.backends.report.collected import Collected, collected_terms
 from pne_sym.backends.report.legforce import leg_force_statements
 from pne_sym.backends.report.markdown import display, inline, table, unit
 from pne_sym.backends.report.names import plain_names, printer_for
 from pne_sym.backends.report.view import ChapterView, EquationView, Statement, Table
+from pne_sym.backends.report.words import SCREWS
+from pne_sym.backends.terms import Term
 from pne_sym.derivation import (
     Chapter,
     Condition,
@@ -31,7 +33,7 @@ class ChapterWriter:
         self.derivation: Derivation = bundle.derivation
         self.collected = collected
         self.plain = printer_for(self.derivation)
-        self.bases = {str(b.duals[-1].name): b for b in self.derivation.bases}
+        self.bases = last_duals(self.derivation)
 
     def chapters(self) -> tuple[ChapterView, ...]:
         """All chapters, each with what it has led to."""
@@ -52,7 +54,7 @@ class ChapterWriter:
         same = [c for c in self.derivation.chapters if c.leg_type == chapter.leg_type]
         if chapter.leg_type and chapter is same[-1]:
             yield from leg_force_statements(
-                self.bundle, self.collected, chapter.leg_type, self.plain
+                self.derivation, self.collected, chapter.leg_type, self.plain
             )
         if defines_blocks(self.derivation, chapter):
             yield from block_statements(self.bundle, self.plain)
@@ -62,10 +64,17 @@ class ChapterWriter:
         return EquationView(
             equation.id,
             self._headline(equation, printer),
-            display(printer.doprint(equation.lhs), self._rows(equation, printer)),
+            self._formula(equation, printer),
             self._steps(equation, printer),
             tuple(self._remarks(equation, printer)),
         )
+
+    def _formula(self, equation: Equation, printer: LatexPrinter) -> tuple[str, ...]:
+        lines = display(printer.doprint(equation.lhs), self._rows(equation, printer))
+        basis = next((b for b in self.derivation.bases if b.duals[0] == equation.lhs), None)
+        if basis is None or not basis.rows:
+            return lines
+        return (*lines, *velocity_matrix(basis, printer))
 
     def _rows(self, equation: Equation, printer: LatexPrinter) -> list[tuple[Term, ...]]:
         """The right-hand side and what it is equal to."""
@@ -88,7 +97,7 @@ class ChapterWriter:
 
     def _part_headline(self, equation: Equation, origin: Equation, printer: LatexPrinter) -> str:
         name = inline(printer.doprint(origin.lhs))
-        where = f"{name} ({origin.id})"
+        where = f"{name} ([{origin.id}](#{origin.id}))"
         for unknown, value in self.collected.forms[origin.name].coefficients.items():
             if value == equation.lhs:
                 return f"Coefficient of {inline(printer.doprint(unknown))} in {where}."
@@ -109,8 +118,8 @@ class ChapterWriter:
 
     def _remarks(self, equation: Equation, printer: LatexPrinter) -> Iterator[str]:
         form = self.collected.forms.get(equation.name)
-        if form is not None:
-            terms = printer.terms(collected_sum(form))
+        if form is not None and form.coefficients:
+            terms = collected_terms(form, printer)
             if terms not in self._rows(equation, printer):
                 text = f"{printer.doprint(equation.lhs)} = " + " ".join(
                     t.signed(first=k == 0) for k, t in enumerate(terms)
@@ -118,6 +127,8 @@ class ChapterWriter:
                 yield f"Collected by Rules I and II: {inline(text)}."
         if equation.note:
             yield equation.note
+        if any(b.rows and b.duals[0] == equation.lhs for b in self.derivation.bases):
+            yield SCREWS
         for condition in equation.conditions:
             yield self._condition(equation, condition, printer)
         if equation.name in self.bases:
@@ -131,9 +142,34 @@ class ChapterWriter:
         return f"**Singular** where {inline(text)} vanishes."
 
 
+def last_duals(derivation: Derivation) -> dict[str, ReciprocalBasis]:
+    """By the name of the last reciprocal vector that is used: the basis."""
+    defined = [e.name for e in derivation.equations()]
+    found = {}
+    for basis in derivation.bases:
+        names = [d.name for d in (*basis.duals, *(m for row in basis.moment_duals for m in row))]
+        used = [name for name in defined if name in names]
+        if used:
+            found[used[-1]] = basis
+    return found
+
+
+def velocity_matrix(basis: ReciprocalBasis, printer: LatexPrinter) -> tuple[str, ...]:
+    """The matrix of the joints' velocities where a leg transmits moments."""
+    rows = [[printer.doprint(v) for v in row] for row in (basis.vectors, *basis.rows)]
+    lines = [r",\qquad \mathcal V =", r"\begin{bmatrix}"]
+    for k, row in enumerate(rows):
+        lines += [row[0], *(f"& {cell}" for cell in row[1:])]
+        if k < len(rows) - 1:
+            lines[-1] += r" \\"
+    return (*lines, r"\end{bmatrix}")
+
+
 def basis_condition(basis: ReciprocalBasis, printer: LatexPrinter) -> str:
     """Where the reciprocal vectors of a leg do not exist."""
     vectors = [printer.doprint(v) for v in basis.vectors]
+    if basis.rows:
+        return r"**Singular** where the determinant of $`\mathcal V`$ vanishes."
     if len(vectors) == 3:
         volume = rf"{vectors[0]}\cdot({vectors[1]}\times {vectors[2]})"
     else:

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.report.equations import last_duals
 from pne_sym.backends.report.markdown import table
 from pne_sym.backends.report.names import leg_title
 from pne_sym.backends.report.view import Statement, Table
+from pne_sym.backends.report.words import FUNCTIONS
 from pne_sym.derivation import Trouble
 from pne_sym.program.count import count_block, count_function
 from pne_sym.program.ir import Block, Counts
@@ -77,11 +79,11 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
     for equation in bundle.derivation.equations():
         for condition in equation.conditions:
             found.setdefault(condition.trouble, []).append(equation.id)
-    bases = {b.id: str(b.duals[-1].name) for b in bundle.derivation.bases}
+    bases = last_duals(bundle.derivation)
     definitions = {e.name: e.id for e in bundle.derivation.equations()}
     singular = [
         *found.get(Trouble.SINGULAR, ()),
-        *(definitions[name] for name in bases.values() if name in definitions),
+        *(definitions[name] for name in bases),
     ]
     lines = []
     if Trouble.UNREACHABLE in found:
@@ -108,10 +110,10 @@ def _links(ids: list[str]) -> str:
 def counts(bundle: Bundle) -> Table:
     """Operations of every function."""
     rows = [
-        _row(f"`{f.name}`", count_function(f, bundle.leg_counts))
+        _row(f"`{f.name}`", FUNCTIONS.get(f.name, ""), count_function(f, bundle.leg_counts))
         for f in bundle.program.functions.values()
     ]
-    return table(("Function", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
+    return table(("Function", "Gives", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
 
 
 def parts(bundle: Bundle) -> Table:
@@ -120,8 +122,8 @@ def parts(bundle: Bundle) -> Table:
     for function in bundle.program.functions.values():
         for k, block in enumerate(function.blocks):
             where = _where(bundle, function.blocks, k)
-            rows.append(_row(f"`{function.name}`: {where}", count_block(block)))
-    return table(("Part", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
+            rows.append(_row(f"`{function.name}`", where, count_block(block)))
+    return table(("Function", "Part", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
 
 
 def _where(bundle: Bundle, blocks: tuple[Block, ...], at: int) -> str:
@@ -132,5 +134,5 @@ def _where(bundle: Bundle, blocks: tuple[Block, ...], at: int) -> str:
     return "after the legs" if any(b.leg_type for b in blocks[:at]) else "before the legs"
 
 
-def _row(label: str, c: Counts) -> tuple[str, ...]:
-    return label, *(str(v) for v in (c.mul, c.add, c.div, c.sqrt, c.total, c.trig))
+def _row(name: str, what: str, c: Counts) -> tuple[str, ...]:
+    return name, what, *(str(v) for v in (c.mul, c.add, c.div, c.sqrt, c.total, c.trig))

@@ -8,7 +8,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.report.markdown import inline, table, unit
 from pne_sym.backends.report.mechanism import model_joints
-from pne_sym.backends.report.names import leg_title, per_leg_names
+from pne_sym.backends.report.names import leg_indices, leg_title, per_leg_names
 from pne_sym.backends.report.view import LegView, Table
 from pne_sym.backends.report.words import KINDS, METHODS, PLATFORM_JOINTS
 from pne_sym.derivation import Derivation, LegTypeInfo, ParameterField, names_in
@@ -16,6 +16,7 @@ from pne_sym.model.manipulator import ZERO3, Joint, Vector3
 
 _TOLERANCE = 1e-9
 _AXES = "xyz"
+_GIVEN = ("Symbol", "Meaning", "Unit", "From")
 
 
 def leg_views(bundle: Bundle, printer: LatexPrinter) -> tuple[LegView, ...]:
@@ -28,19 +29,23 @@ def _leg(bundle: Bundle, info: LegTypeInfo, printer: LatexPrinter) -> LegView:
     joints = model_joints(bundle.manipulator, info)
     return LegView(
         leg_title(info),
-        f"Legs {ranges([i + 1 for i in info.indices])}."
-        if len(info.indices) > 1
-        else f"Leg {info.indices[0] + 1}.",
+        _which(info, leg_indices(derivation)[info.name]),
         table(
             ("Joint", "Kind", "Role", "Axis", "To the axis before", "Offset", "Link"),
             [_joint_row(joints, j) for j in range(len(joints))],
         ),
         tuple(_closing(bundle, info)),
         tuple(_solved(info)),
-        table(("Symbol", "Meaning", "Unit"), _given_rows(derivation, info.name, printer)),
+        table(_GIVEN, _given_rows(derivation, info.name, printer)),
         parameter_table(derivation, info.name),
         f"`legs[i]` with i = {ranges(info.indices)}, counted from 0",
     )
+
+
+def _which(info: LegTypeInfo, letter: str) -> str:
+    """Which legs are of a type, and their index in sums."""
+    word = "Legs" if len(info.indices) > 1 else "Leg"
+    return f"{word} {ranges([i + 1 for i in info.indices])}; index {inline(letter)} in sums."
 
 
 def ranges(numbers: Sequence[int]) -> str:
@@ -136,7 +141,7 @@ def _solved(info: LegTypeInfo) -> Iterator[str]:
 
 def platform_notation(derivation: Derivation, printer: LatexPrinter) -> Table:
     """Given symbols that are not of a leg."""
-    return table(("Symbol", "Meaning", "Unit"), _given_rows(derivation, None, printer))
+    return table(_GIVEN, _given_rows(derivation, None, printer))
 
 
 def _given_rows(
@@ -155,7 +160,21 @@ def _given_rows(
     }
     for name, quantity in derivation.notation.items():
         if name in used and name not in defined and (name in per_leg) == (leg_type is not None):
-            yield inline(str(printer.glyph_of(name))), quantity.meaning, unit(quantity.unit)
+            symbol = inline(str(printer.glyph_of(name)))
+            yield symbol, quantity.meaning, unit(quantity.unit), _source(derivation, name)
+
+
+def _source(derivation: Derivation, name: str) -> str:
+    """Where the numbers of a given symbol come from."""
+    table = derivation.parameters
+    given = next((g for g in derivation.givens if g.symbol.name == name), None)
+    entries = {n for c in given.components for n in names_in(c)} if given else {name}
+    fields = dict.fromkeys(table.entries[n][0].name for n in sorted(entries & set(table.entries)))
+    if fields:
+        return ", ".join(f"`{field}`" for field in fields)
+    if name in table.branches or not entries:
+        return "structure"
+    return "state"
 
 
 def parameter_table(derivation: Derivation, leg_type: str | None) -> Table:

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable, Sequence
 
 from pne_sym.backends.glyphs import visible_width
-from pne_sym.backends.latex import Term
 from pne_sym.backends.report.view import Table
+from pne_sym.backends.terms import Term
 
 LINE = 66.0
 SOURCE = 92

@@ -8,7 +8,7 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.report.markdown import table, unit
 from pne_sym.backends.report.names import leg_title
 from pne_sym.backends.report.view import Table
-from pne_sym.backends.report.words import CASES, SPACES
+from pne_sym.backends.report.words import CASES, JOINTS, SPACES
 from pne_sym.derivation import LegTypeInfo
 from pne_sym.model.manipulator import Joint, JointKind, Manipulator
 
@@ -32,10 +32,19 @@ def summary(bundle: Bundle) -> str:
     carried = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
     return (
         f"The mechanism is {SPACES[manipulator.space.value]}, carried by {carried} in parallel. "
-        "R is a revolute joint, P a prismatic, H a helical, U a universal, C a cylindrical, "
-        "S a spherical one, named from the base to the platform; driven joints are underlined, "
-        "and a star marks a joint whose displacement is an extra coordinate."
+        f"{_letters(bundle)}, from the base to the platform. Driven joints are underlined"
+        + (
+            "; a star marks a joint whose displacement is an extra coordinate."
+            if bundle.coordinates.extras
+            else "."
+        )
     )
+
+
+def _letters(bundle: Bundle) -> str:
+    """The letters of the architectures that occur."""
+    titles = "".join(info.title for info in bundle.derivation.leg_types)
+    return ", ".join(f"{letter}: {word}" for letter, word in JOINTS.items() if letter in titles)
 
 
 def cases(bundle: Bundle) -> tuple[str, ...]:
@@ -43,6 +52,9 @@ def cases(bundle: Bundle) -> tuple[str, ...]:
     sizes, manipulator = bundle.coordinates.sizes, bundle.manipulator
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
+    spare = [
+        sum(joint.actuated and joint.extra for joint in leg.joints) for leg in manipulator.legs
+    ]
     freedoms = sizes["NV"] - sizes["NC"]
     found = []
     if any(joint.extra and joint.actuated for joint in joints):
@@ -55,7 +67,7 @@ def cases(bundle: Bundle) -> tuple[str, ...]:
         found.append("3.3")
     if sizes["NU"] > freedoms and max(drives) > 1:
         found.append("3.4")
-    elif max(drives) > 1 and "3.5" not in found:
+    elif any(n - extra > 1 for n, extra in zip(drives, spare, strict=True)):
         found.append("3.2")
     return tuple(CASES[case] for case in (found or ["3.1"]))
 
@@ -73,20 +85,19 @@ def orders(bundle: Bundle) -> Table:
 
 
 def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
-    c, manipulator = bundle.coordinates, bundle.manipulator
+    c = bundle.coordinates
     extra = _per_type(bundle, lambda joint: joint.extra, _displacement)
     pose, rates = _listed(c.pose), _listed(c.rates)
     if c.extras:
         pose += f"; then the extra coordinates: {extra}"
         rates += "; then those of the extra coordinates"
-    yield "X", pose
-    yield "V, A", f"{rates} (A: their derivatives)"
-    yield "tau", _per_type(bundle, lambda joint: joint.actuated, _effort) or "none"
-    yield "q", _per_type(bundle, lambda _: True, _displacement)
+    yield "`X`", pose
+    yield "`V`, `A`", f"{rates} (A: their derivatives)"
+    yield "`tau`", _per_type(bundle, lambda joint: joint.actuated, _effort) or "none"
+    yield "`q`", _per_type(bundle, lambda _: True, _displacement)
     if c.constraints:
-        yield "lambda", ("reactions along the directions that the legs leave out, leg by leg (N)")
-    yield "wrench", f"{_listed(c.wrench)}: external force and moment on the platform"
-    del manipulator
+        yield "`lambda`", "reactions along the directions that the legs leave out, leg by leg (N)"
+    yield "`wrench`", f"{_listed(c.wrench)}: external force and moment on the platform"
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -11,14 +11,7 @@ from pne_sym.vector import LegSum, TensorLegSum, VectorLegSum
 
 def leg_title(info: LegTypeInfo) -> str:
     """Architecture with the driven joint underlined, for Markdown text."""
-    return _marked(info, "<ins>", "</ins>") + _number(info)
-
-
-def leg_latex(info: LegTypeInfo) -> str:
-    """The same for formulas."""
-    text = _marked(info, r"\underline{", "}")
-    number = _number(info).strip()
-    return rf"\mathrm{{{text}}}" + (f"_{{{number}}}" if number else "")
+    return _marked(info, "<ins>", "</ins>").replace("*", r"\*") + _number(info)
 
 
 def _marked(info: LegTypeInfo, before: str, after: str) -> str:
@@ -46,15 +39,20 @@ def plain_names(text: str, derivation: Derivation) -> str:
     return text
 
 
+INDICES = "ilnprsu"
+
+
+def leg_indices(derivation: Derivation) -> dict[str, str]:
+    """Leg type -> the letter that runs over its legs."""
+    letters = (*INDICES, *(f"i_{k}" for k in range(1, len(derivation.leg_types))))
+    return dict(zip((info.name for info in derivation.leg_types), letters, strict=False))
+
+
 def printer_for(derivation: Derivation) -> LatexPrinter:
     """The LaTeX printer with a derivation's notation."""
-    several = len(derivation.leg_types) > 1
-    legs = {
-        info.name: rf"i\in {leg_latex(info)}" if several else "i" for info in derivation.leg_types
-    }
     symbols = {name: code_latex(name) for name in derivation.parameters.entries}
     symbols |= {name: quantity.latex for name, quantity in derivation.notation.items()}
-    return LatexPrinter(symbols, per_leg_names(derivation), legs)
+    return LatexPrinter(symbols, per_leg_names(derivation), leg_indices(derivation))
 
 
 def code_latex(name: str) -> str:
@@ -63,27 +61,35 @@ def code_latex(name: str) -> str:
     return rf"\mathtt{{{escaped}}}"
 
 
-def per_leg_names(derivation: Derivation) -> frozenset[str]:
-    """Names of quantities of which every leg has its own."""
+def per_leg_names(derivation: Derivation) -> dict[str, str]:
+    """Names of quantities of which every leg has its own -> leg type."""
     table = derivation.parameters
-    found = {name for name, (field, _) in table.entries.items() if field.leg_type}
-    found |= set(table.branches)
-    legs = tuple(f"{info.name}." for info in derivation.leg_types)
+    entries = {name: field.leg_type for name, (field, _) in table.entries.items()}
+    found = {name: leg_type for name, leg_type in entries.items() if leg_type}
+    found |= {name: leg_type for name, (leg_type, _) in table.branches.items()}
     for given in derivation.givens:
-        entries = {n for component in given.components for n in names_in(component)}
-        if given.frame.startswith(legs) or entries & found:
-            found.add(given.symbol.name)
+        prefix = given.frame.split(".")[0]
+        names = {n for component in given.components for n in names_in(component)}
+        owners = [prefix] if "." in given.frame else sorted(found[n] for n in names & found.keys())
+        if owners:
+            found[given.symbol.name] = owners[0]
     for chapter in derivation.chapters:
         for equation in chapter.equations:
-            if chapter.leg_type or names_outside_sums(equation.rhs) & found:
-                found.add(equation.name)
-    defined = {equation.name for equation in derivation.equations()}
-    given_names = {given.symbol.name for given in derivation.givens}
-    for chapter in derivation.chapters:  # extra coordinates, rates and accelerations
-        if chapter.leg_type:
-            used = {n for e in chapter.equations for n in names_in(e.rhs)}
-            found |= used - defined - given_names - set(table.entries)
-    return frozenset(found)
+            names = names_outside_sums(equation.rhs)
+            if chapter.leg_type:
+                found[equation.name] = chapter.leg_type
+                # not defined, not given: extra coordinates, their rates and accelerations
+                known = found.keys() | derivation_givens(derivation)
+                found |= dict.fromkeys(names - known, chapter.leg_type)
+            elif names & found.keys():
+                found[equation.name] = found[min(names & found.keys())]
+    return found
+
+
+def derivation_givens(derivation: Derivation) -> set[str]:
+    """Names with given components, and those that platform equations define."""
+    shared = {e.name for c in derivation.chapters if not c.leg_type for e in c.equations}
+    return {g.symbol.name for g in derivation.givens} | set(derivation.parameters.entries) | shared
 
 
 def names_outside_sums(expr: Any) -> set[str]:

@@ -57,10 +57,17 @@ MARKS: tuple[tuple[str, str], ...] = (
     (
         r"\sum_i",
         (
-            "sum over the legs; quantities of a leg carry its index $`i`$ there, and none in "
-            "the chapters on one leg"
+            "sum over the legs of a type (every type has its letter); quantities of a leg carry "
+            "the index there, and none in the chapters on one leg"
         ),
     ),
+)
+
+SCREWS = (
+    r"Column j of $`\mathcal V`$ says how joint j moves the connection point, and how it turns the "
+    r"link along the directions of the moments that the platform joint transmits. Of row k of the "
+    r"inverse, $`\mathrm F`$ is the part for the point (a vector), $`\mathrm M_i`$ that for moment "
+    "direction i."
 )
 
 CONVENTIONS: tuple[str, ...] = (
@@ -99,8 +106,31 @@ METHODS: dict[str, str] = {
     "numeric": "no closed form, found by iteration: {reason}",
 }
 
+JOINTS = {
+    "R": "revolute joint",
+    "P": "prismatic joint",
+    "H": "helical joint",
+    "U": "universal joint",
+    "C": "cylindrical joint",
+    "S": "spherical joint",
+}
 KINDS = {"R": "revolute", "P": "prismatic", "H": "helical"}
 PLATFORM_JOINTS = {"S": "spherical", "R": "revolute", "U": "universal", "rigid": "rigid"}
+FUNCTIONS = {
+    "dynamics": "all of the equation of motion together",
+    "M": "mass matrix",
+    "Z": "velocity and gravity terms",
+    "H": "effect of the actuators",
+    "Hk": "effect of the constraints",
+    "constraint_bias": "velocity part of the constraints' second derivative",
+    "required": "inverse dynamics: both sides of its linear system",
+    "inverse_kinematics": "joint displacements",
+    "joint_rates": "joint rates",
+    "joint_accelerations": "joint accelerations",
+    "constraints": "distances by which the legs miss the platform",
+    "legs": "leg forces, for the leg reactions",
+    "potential": "potential energy",
+}
 SPACES = {
     "point": "a point moving in the plane",
     "planar": "a platform moving in the plane",
