@@ -5,7 +5,7 @@ from __future__ import annotations
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.registry import BACKENDS
 from pne_sym.lowering.program import lower
-from pne_sym.lowering.solve import SingularPattern
+from pne_sym.lowering.solve import SingularPatternError
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import Manipulator
@@ -20,7 +20,7 @@ def compile_bundle(manipulator: Manipulator) -> Bundle:
     derivation = derive(manipulator)
     try:
         program = lower(derivation)
-    except SingularPattern as error:
+    except SingularPatternError as error:
         raise SpecError(
             manipulator.name, "legs", str(error), "legs whose freedoms are independent"
         ) from error

@@ -290,7 +290,7 @@ class _Parts:
         return f"def {signature}:\n" + textwrap.indent("\n".join(math + body), "    ")
 
     def _before(self, name: str) -> str:
-        inputs = {v: [s for s in self._entries(v)] for v in self.f.inputs}
+        inputs = {v: self._entries(v) for v in self.f.inputs}
         body = self.w.names(self._shared(self.before, self.f.unpack), "c")
         for vector, size in inputs.items():
             for k in size:

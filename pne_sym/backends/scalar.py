@@ -126,7 +126,7 @@ class ScalarPrinter(StrPrinter):
 
     _print_sin = _print_cos = _print_atan2 = _print_Function
 
-    def emptyPrinter(self, expr: Any) -> str:  # noqa: N802
+    def emptyPrinter(self, expr: Any) -> str:
         """Refuse what is not in the closed set."""
         raise TypeError(f"no {type(expr).__name__} in generated code")
 

@@ -364,7 +364,7 @@ def operations(expr: Any) -> int:
         factors = [a for a in expr.args if a not in (1, -1)]
         return inner + len(factors) - 1
     if expr.is_Pow:
-        base, exponent = expr.args
+        exponent = expr.exp
         if exponent.is_Integer and exponent > 0:
             return inner + int(exponent) - 1
         if exponent == sp.Rational(-1, 2):

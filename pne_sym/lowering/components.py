@@ -301,7 +301,7 @@ class Lowering:
         )
 
     def axis_column(self, origin: str, target: str, k: int) -> Triple:
-        """Axis k of a frame in another: along a vector known in both, by cross product, or turned."""
+        """Axis k of a frame in another: along a known vector, by cross product, or turned."""
         key = (origin, target, k)
         if key in self._axis_columns:
             return self._axis_columns[key]
@@ -406,9 +406,7 @@ class Lowering:
         if all(c == 0 for c in v):
             return v
         s = self.scalar(factor)
-        return tuple(
-            self.b.mul(s, c, f"{hint}_{_XYZ[i]}" if hint else "") for i, c in enumerate(v)
-        )
+        return tuple(self.b.mul(s, c, f"{hint}_{_XYZ[i]}" if hint else "") for i, c in enumerate(v))
 
     def _vector_apply(self, expr: Any, frame: str, hint: str) -> Triple:
         v = self.vector(expr.args[1], frame)
@@ -491,7 +489,7 @@ class Lowering:
         right = [*self.vector(x, self.basis_frame(basis)), *(sp.S.Zero for _ in basis.rows)]
         scales = [self.scalar(s) for s in basis.scales]
         hints = [self._named_parts.get((w.name, x), "") for w in basis.duals]
-        return solve(self.b, self._basis_matrix(basis), right, lambda i, j: scales[j], hints)
+        return solve(self.b, self._basis_matrix(basis), right, lambda _, j: scales[j], hints)
 
     def _basis_matrix(self, basis: ReciprocalBasis) -> list[list[Atom]]:
         """Columns (v_j; moment rows) in the basis's frame."""
@@ -505,7 +503,7 @@ class Lowering:
         transposed = [[rows[i][j] for i in used] for j in range(len(basis.vectors))]
         right = [self.scalar(g) for g in weights]
         scales = [self.scalar(s) for s in basis.scales]
-        solution = solve(self.b, transposed, right, lambda j, i: scales[j], [""] * len(used))
+        solution = solve(self.b, transposed, right, lambda j, _: scales[j], [""] * len(used))
         full = [sp.S.Zero] * len(rows)
         for i, value in zip(used, solution, strict=True):
             full[i] = value

@@ -52,7 +52,7 @@ def lower(derivation: Derivation) -> Program:
     """Lower a derivation to scalar code.
 
     Raises:
-        SingularPattern: a leg's freedoms are dependent by structure.
+        SingularPatternError: a leg's freedoms are dependent by structure.
     """
     builder = Builder()
     builder.quantity_of = {e.id: e.name for e in derivation.equations()}
@@ -168,7 +168,8 @@ def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
         if output.leg_type:
             stage = Stage(Kind.STATE_LEG, output.leg_type)
         places = [(row, column)]
-        if ((output.mirrored or output.symmetric) and (row, column) != (column, row)) or (output.mirrored and output.leg_rows != output.leg_columns):
+        off_diagonal = (output.mirrored or output.symmetric) and row != column
+        if off_diagonal or (output.mirrored and output.leg_rows != output.leg_columns):
             places.append((column, row))
         for k, (r, c) in enumerate(places):
             swap = k == 1

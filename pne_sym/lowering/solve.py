@@ -16,7 +16,7 @@ from pne_sym.lowering.builder import Atom, Builder
 Rows = list[list[Atom]]
 
 
-class SingularPattern(ValueError):
+class SingularPatternError(ValueError):
     """The zero pattern leaves the system without a solution."""
 
 
@@ -36,12 +36,12 @@ def solve(
         hints: names for the unknowns.
 
     Raises:
-        SingularPattern: by structure there is no unique solution.
+        SingularPatternError: by structure there is no unique solution.
     """
     rows = [i for i, row in enumerate(matrix) if any(e != 0 for e in row)]
     columns = list(range(len(hints)))
     if len(rows) != len(columns):
-        raise SingularPattern("the joints' freedoms are dependent by structure")
+        raise SingularPatternError("the joints' freedoms are dependent by structure")
     system = _System(b, matrix, list(right), scale, hints)
     system.run(rows, columns)
     return [system.x[j] for j in range(len(hints))]
@@ -88,7 +88,7 @@ class _System:
         self.x[j] = self.b.divide(self._rest(i, (j,)), pivot, self.hints[j])
 
     def _dense(self, rows: list[int], columns: list[int]) -> None:
-        """Cramer's rule on the dense rest: no divisions before the last, so no false singularities."""
+        """Cramer's rule on the dense rest: the only division is the last, by the determinant."""
         b = self.b
         right = {i: self._rest(i, columns) for i in rows}
         determinant = self._minor(tuple(rows), tuple(columns))

@@ -31,22 +31,22 @@ def branch_signs(
     starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
     rows = []
     pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
-    for index, leg in zip(g.leg_type.indices, g.leg_type.legs, strict=True):
+    for index in g.leg_type.indices:
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        rows.append(_signs_of_leg(manipulator.name, index, leg, q, g, inverse, book, pose.R))
+        rows.append(_signs_of_leg(manipulator.name, index, q, g, inverse, book, pose.R))
     return [tuple(row[k] for row in rows) for k in range(len(inverse.branches))]
 
 
 def _signs_of_leg(
     name: str,
     index: int,
-    leg: Leg,
     q: Array,
     g: LegGeometry,
     inverse: InverseKinematics,
     book: Book,
     base_R_platform: Array,
 ) -> list[int]:
+    leg = g.leg_type.legs[g.leg_type.indices.index(index)]
     values = _values_at(leg, q, g, g.leg_type.indices.index(index), base_R_platform)
     for j in range(1, g.count + 1):
         values[g.name(f"q_{j}")] = q[j - 1]

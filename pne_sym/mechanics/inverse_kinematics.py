@@ -178,9 +178,9 @@ class _Solver:
             turning
             and all(g.parallel(turning[0], k) for k in turning)
             and all(g.perpendicular(turning[0], k) for k in sliding)
+            and self._useful(j, turning[0])
         ):
-            if self._useful(j, turning[0]):
-                return "linear", g.e[turning[0]], self._constant(j, turning[0])
+            return "linear", g.e[turning[0]], self._constant(j, turning[0])
         if not turning and sliding and len(sliding) == 1:
             found = self._across_slide(j, sliding[0])
             if found is not None:
@@ -411,7 +411,7 @@ class _Solver:
             self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
             x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         length2 = self._scalar_parameter(f"uu_{j}", u_n**2 + u_m**2)
-        return self.book.define(
+        resolved: Vector = self.book.define(
             g.name(f"xi_{j}"),
             (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
             rf"\boldsymbol\xi_{{{j}}}",
@@ -420,6 +420,7 @@ class _Solver:
             unit="m",
             body=g.frame("axes", j),
         )
+        return resolved
 
     def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
         """Components of u in link j's canonical axes where the structure fixes them, else None."""
@@ -493,7 +494,7 @@ class _Solver:
     def _direct(self, j: int, x: Vector) -> Vector:
         """Nothing follows: the tip's offset must turn into x."""
         g = self.g
-        reference, across, e = self._turn_axes(j)
+        reference, across, _ = self._turn_axes(j)
         n, m = self._link_axes(j)
         tip = g.offset[g.count + 1]
         if tip == ZeroVector:
@@ -501,11 +502,13 @@ class _Solver:
             self._numeric(j, self.reasons[j])
             return x
         A, B = Dot(reference, x), Dot(across, x)
-        k, l = Dot(tip, n), Dot(tip, m)
-        length2 = self._scalar_parameter(f"uu_{j}", k**2 + l**2)
+        along, aside = Dot(tip, n), Dot(tip, m)
+        length2 = self._scalar_parameter(f"uu_{j}", along**2 + aside**2)
         self.methods[j] = "direct"
         if not self.constrained:
-            self._cosine_sine(j, (k * A + l * B) / length2, (k * B - l * A) / length2)
+            self._cosine_sine(
+                j, (along * A + aside * B) / length2, (along * B - aside * A) / length2
+            )
             return tip
         squared = self._scalar(
             f"rho2_{j}", (A**2 + B**2) * length2, rf"\rho_{{{j}}}^2", "squared amplitude", "m^4"
@@ -518,7 +521,9 @@ class _Solver:
             "m^2",
             conditions=(Condition(Trouble.SINGULAR, squared, g.size**4, 2),),
         )
-        self._cosine_sine(j, (k * A + l * B) / amplitude, (k * B - l * A) / amplitude)
+        self._cosine_sine(
+            j, (along * A + aside * B) / amplitude, (along * B - aside * A) / amplitude
+        )
         return tip
 
     def _orient(self, j: int) -> None:

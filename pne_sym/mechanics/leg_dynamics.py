@@ -323,7 +323,8 @@ class DynamicsWriter:
             f"mu_{group}",
             vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
             rf"\boldsymbol\mu_{{{group}}}",
-            f"inertia moment of the links that turn with link {group}, about their reference points",
+            f"inertia moment of the links that turn with link {group}, about their "
+            f"reference points",
             Law.EULER,
             unit="N m",
             coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}",
@@ -418,7 +419,7 @@ class DynamicsWriter:
 
     def run(self) -> LegDynamics:
         """Write Newton-Euler from the last link to the base and solve for the leg's force."""
-        g, motion = self.g, self.motion
+        motion = self.motion
         tip = next((b for b in self.bodies if b.at_tip), None)
         forces: dict[int, Any] = {}
         relative: dict[int, Any] = {}
@@ -585,8 +586,8 @@ class DynamicsWriter:
                 "c",
                 -(G + phi),
                 r"\mathbf c",
-                "leg force on the platform without actuation and without the mass at the connection "
-                "point",
+                "leg force on the platform without actuation and without the mass at the "
+                "connection point",
                 Law.REDUCTION,
                 unit="N",
                 coefficient_latex=r"\mathbf K",

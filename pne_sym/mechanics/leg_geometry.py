@@ -105,9 +105,7 @@ class LegGeometry:
         """
         if not self.turns(j):
             return True
-        if self.kind(j) is not JointKind.HELICAL or j in self.bent_helices:
-            return False
-        return True
+        return self.kind(j) is JointKind.HELICAL and j not in self.bent_helices
 
     def is_extra(self, j: int) -> bool:
         """Whether joint j's displacement is a coordinate of its own."""

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import sympy as sp
@@ -36,6 +37,7 @@ from pne_sym.vector import (
     linear_form,
     vector_sum,
 )
+from pne_sym.vector.nodes import scale
 
 
 @dataclass
@@ -228,10 +230,11 @@ class MotionWriter:
         return vector_sum(terms)
 
     def _along(self, j: int) -> Vector:
+        """Displacement along axis j."""
         g = self.g
-        if g.turns(j):
-            return self.q[j] * g.pitch[j] * g.e[j] if j in g.pitch else ZeroVector
-        return self.q[j] * g.e[j]
+        if g.turns(j) and j not in g.pitch:
+            return ZeroVector
+        return scale(self.q[j] * g.pitch.get(j, 1), g.e[j])
 
     def span(self, group: int) -> Vector:
         """From the origin of a group to the next group's joint, or to the connection point."""
@@ -244,7 +247,7 @@ class MotionWriter:
         vector = vector_sum((self.spans[j], following))
         if isinstance(vector, VectorSymbol) or vector == ZeroVector:
             return vector
-        return self.book.define(
+        named: Vector = self.book.define(
             g.name(f"r_{j}"),
             vector,
             rf"\mathbf r_{{{j}}}",
@@ -254,6 +257,7 @@ class MotionWriter:
             body=g.frame("axes", j),
             forms=self._closed_loop(j),
         )
+        return named
 
     def _closed_loop(self, j: int) -> tuple[Vector, ...]:
         """The same vector, seen from the base; resolved vectors give way to what they resolve."""
@@ -266,6 +270,7 @@ class MotionWriter:
     # ---- rates -----------------------------------------------------------------------
 
     def velocity(self) -> None:
+        """Velocity of the connection point, joint screws, reciprocal wrenches, rates."""
         g, book, p = self.g, self.book, self.p
         self.S_dot = book.define(
             g.name("S_dot"),
@@ -298,7 +303,7 @@ class MotionWriter:
         vector = Cross(g.e[j], rods[j])
         if j in g.pitch:
             vector = vector + g.pitch[j] * g.e[j]
-        return self.book.define(
+        named: Vector = self.book.define(
             g.name(f"v_{j}"),
             vector,
             rf"\mathbf v_{{{j}}}",
@@ -308,6 +313,7 @@ class MotionWriter:
             body=self.tip_frame(),
             reference="Sec. 2.2, joint table",
         )
+        return named
 
     def tip_frame(self) -> str:
         """Canonical frame of the last link."""
@@ -530,6 +536,7 @@ class MotionWriter:
     # ---- accelerations ---------------------------------------------------------------
 
     def acceleration(self) -> None:
+        """Bias, accelerations of joints and links, and their linear forms."""
         g, book, p, motion = self.g, self.book, self.p, self.motion
         q = g.platform_point
         motion.u_1 = ZeroVector
@@ -622,7 +629,7 @@ class MotionWriter:
         total = vector_sum(terms)
         if total == ZeroVector:
             return ZeroVector
-        return book.define(
+        named: Vector = book.define(
             g.name("bias"),
             total,
             r"\mathfrak b",
@@ -633,13 +640,15 @@ class MotionWriter:
             forms=(vector_sum(forms),),
             reference="Sec. 2.2",
         )
+        return named
 
     def _named_sum(self, stem: str, value: Vector, latex: str, title: str, frame: str) -> Vector:
         if value == ZeroVector or isinstance(value, VectorSymbol):
             return value
-        return self.book.define(
+        named: Vector = self.book.define(
             self.g.name(stem), value, latex, title, Law.RATE, unit="rad/s^2", body=frame
         )
+        return named
 
     def _joint_accelerations(self, writer: LinearWriter, bias: Vector) -> None:
         g, book, motion = self.g, self.book, self.motion
@@ -789,7 +798,7 @@ class MotionWriter:
         g, motion = self.g, self.motion
         order = list(self.spans)
         motion.origin_acceleration[order[0]] = ZeroVector
-        for previous, j in zip(order, order[1:], strict=False):
+        for previous, j in pairwise(order):
             slides = [
                 i
                 for i in range(1, g.count + 1)

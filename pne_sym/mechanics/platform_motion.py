@@ -98,8 +98,8 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
 _TEXT = (
     r"The pose of the platform gives its origin and its rotation matrix; velocity and acceleration "
     r"are those of the origin. Two tensors save work: for a vector $`\mathbf r`$ fixed in the "
-    r"platform, $`\mathbf W_p\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$ "
-    r"and $`\mathbf B_p\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf W_p\,\mathbf r`$."
+    r"platform $`\mathbf W_p\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$"
+    r" and $`\mathbf B_p\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf W_p\,\mathbf r`$."
 )
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.model.manipulator import JointKind, Leg, Manipulator, Vector3
+from pne_sym.model.manipulator import Joint, JointKind, Leg, Manipulator, Vector3
 
 TOLERANCE = 1e-9
 Array = NDArray[np.float64]
@@ -127,10 +127,8 @@ def architecture_of(leg: Leg) -> str:
     return "".join(letters) + {"S": "S", "R": "R", "U": "U", "rigid": ""}[leg.platform_joint.kind]
 
 
-def _is_cross(joint: object, following: object) -> bool:
-    from pne_sym.model.manipulator import Joint
-
-    assert isinstance(joint, Joint) and isinstance(following, Joint)
+def _is_cross(joint: Joint, following: Joint) -> bool:
+    """Whether two joints are the axes of a massless cross."""
     return (
         joint.kind is JointKind.REVOLUTE
         and following.kind is JointKind.REVOLUTE

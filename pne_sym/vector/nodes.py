@@ -78,6 +78,7 @@ class _Named:
 
     @property
     def name(self) -> str:
+        """The name."""
         return str(self.args[0].name)
 
     def _sympystr(self, printer: Any) -> str:
@@ -88,6 +89,7 @@ class VectorSymbol(_Named, Vector):
     """A named vector."""
 
     def __new__(cls, name: str | Str) -> VectorSymbol:
+        """The vector of this name."""
         return super().__new__(cls, Str(str(name)))  # type: ignore[no-any-return]
 
 
@@ -95,10 +97,12 @@ class TensorSymbol(_Named, Tensor):
     """A named tensor; `symmetric` is known to the algebra and to the lowering."""
 
     def __new__(cls, name: str | Str, symmetric: Any = False) -> TensorSymbol:
+        """The tensor of this name."""
         return super().__new__(cls, Str(str(name)), sp.sympify(bool(symmetric)))  # type: ignore[no-any-return]
 
     @property
     def is_symmetric(self) -> bool:
+        """Whether the tensor equals its transpose."""
         return bool(self.args[1])
 
 
@@ -131,6 +135,7 @@ class Cross(Vector):
     """The cross product a x b in space."""
 
     def __new__(cls, a: Vector, b: Vector) -> Vector:
+        """Build simplified."""
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
         if ZeroVector in (a, b) or a == b:
@@ -142,6 +147,7 @@ class Perp(Vector):
     """A vector of the plane turned by +90 degrees."""
 
     def __new__(cls, a: Vector) -> Vector:
+        """Build simplified."""
         if a == ZeroVector:
             return ZeroVector
         factor, a = split_scale(a)
@@ -185,6 +191,7 @@ class Skew(Tensor):
     """The tensor of the cross product: Skew(a) b = a x b."""
 
     def __new__(cls, a: Vector) -> Tensor:
+        """Build simplified."""
         if a == ZeroVector:
             return ZeroTensor
         factor, a = split_scale(a)
@@ -195,6 +202,7 @@ class Outer(Tensor):
     """The tensor product a b^T: (a b^T) c = a (b . c)."""
 
     def __new__(cls, a: Vector, b: Vector) -> Tensor:
+        """Build simplified."""
         if ZeroVector in (a, b):
             return ZeroTensor
         factor_a, a = split_scale(a)
@@ -210,6 +218,7 @@ class Transpose(Tensor):
     """The transpose of a tensor."""
 
     def __new__(cls, a: Tensor) -> Tensor:
+        """Build simplified."""
         if a in (ZeroTensor, Identity) or (isinstance(a, TensorSymbol) and a.is_symmetric):
             return a
         factor, a = split_tensor_scale(a)
@@ -240,6 +249,7 @@ class Dot(_VectorScalar):
     """The scalar product a . b."""
 
     def __new__(cls, a: Vector, b: Vector) -> Scalar:
+        """Build simplified."""
         if ZeroVector in (a, b):
             return sp.S.Zero
         factor_a, a = split_scale(a)
@@ -251,6 +261,7 @@ class PlaneCross(_VectorScalar):
     """The cross product a x b = a_1 b_2 - a_2 b_1 of two vectors of the plane."""
 
     def __new__(cls, a: Vector, b: Vector) -> Scalar:
+        """Build simplified."""
         factor_a, a = split_scale(a)
         factor_b, b = split_scale(b)
         if ZeroVector in (a, b) or a == b:

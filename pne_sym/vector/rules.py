@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 import sympy as sp
 
-from pne_sym.vector.nodes import Cross, Identity, Outer, Perp, Skew, Tensor, Vector, scale
+from pne_sym.vector.nodes import Cross, Dot, Identity, Outer, Perp, Skew, Tensor, Vector, scale
 
 
 class Rule(Protocol):
@@ -69,8 +69,6 @@ class RuleApplication:
 
 def apply_rule_i(a: Vector, x: Vector, b: Vector) -> tuple[Tensor, RuleApplication]:
     """Rule I on (a . x) b, recorded."""
-    from pne_sym.vector.nodes import Dot
-
     coefficient = RULE_I.coefficient(a, b)
     return coefficient, RuleApplication(RULE_I, scale(Dot(a, x), b), coefficient @ x)
 
