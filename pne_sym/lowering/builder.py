@@ -159,8 +159,10 @@ class Builder:
 
     def add(self, terms: Iterable[Atom], hint: str = "", *, named: bool = False) -> Atom:
         """Sum of atoms."""
-        total = sp.Add(*terms)
-        return self.let(self._opened(total), hint, named=named)
+        present = [t for t in terms if t is not sp.S.Zero]
+        if len(present) < 2:
+            return present[0] if present else sp.S.Zero
+        return self.let(self._opened(sp.Add(*present)), hint, named=named)
 
     def _opened(self, total: Any) -> Any:
         """The sum with named sums in it opened, where terms then cancel."""
@@ -190,8 +192,10 @@ class Builder:
 
     def mul(self, a: Atom, b: Atom, hint: str = "", *, named: bool = False) -> Atom:
         """Product of atoms; x/b times b is x."""
-        if a == 0 or b == 0:
+        if a is sp.S.Zero or b is sp.S.Zero:
             return sp.S.Zero
+        if a is sp.S.One or b is sp.S.One:
+            return b if a is sp.S.One else a
         if a.is_Number or b.is_Number:
             return self.let(a * b, hint, named=named)
         if a == b:
