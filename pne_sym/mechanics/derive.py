@@ -13,6 +13,7 @@ from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displa
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.scope import check_scope
@@ -43,7 +44,8 @@ def derive(manipulator: Manipulator) -> Derivation:
     writer.blocks()
     _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
     book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
-    return book.close()
+    equal = (pair for leg, _ in legs for pair in leg.g.same_axes())
+    return with_symbols(book.close(), manipulator, equal)
 
 
 def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) -> Coordinates:

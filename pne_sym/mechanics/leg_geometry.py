@@ -10,6 +10,8 @@ offset) that is not parallel to z.  A turn by the joint's angle leads from the
 
 from __future__ import annotations
 
+import itertools
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -121,6 +123,13 @@ class LegGeometry:
         if np.all(dots > 1 - TOLERANCE):
             return 1
         return -1 if np.all(dots < -1 + TOLERANCE) else 0
+
+    def same_axes(self) -> Iterator[tuple[str, str]]:
+        """Names of the axes of joints that point the same way by structure, in pairs."""
+        for j, k in itertools.combinations(self.e, 2):
+            between = (i for i in range(j + 1, k) if self.turns(i))
+            if self.parallel(j, k) == 1 and all(self.parallel(j, i) for i in between):
+                yield self.e[j].name, self.e[k].name
 
     def axis_pattern(self, group: int, j: int) -> tuple[Any, ...]:
         """Axis j in the canonical axes of a group: 0, 1, -1 by structure, else None."""

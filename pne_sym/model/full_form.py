@@ -31,6 +31,8 @@ def to_full_form(manipulator: Manipulator) -> Plain:
     form["platform"] = _body(m.platform)
     form["legs"] = [_leg(leg) for leg in m.legs]
     form["home"] = {"X": list(m.home.X), "q": list(m.home.q)}
+    if m.symbols:
+        form["symbols"] = dict(m.symbols)
     return form
 
 

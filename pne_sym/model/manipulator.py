@@ -161,6 +161,8 @@ class Manipulator:
         legs: in the order that fixes q, tau, the columns of H, and lambda.
         home: a pose that closes the loops; fixes the assembly branch.
         fixed_centre: centre of rotation in the base frame (spherical only), m.
+        symbols: how the report writes quantities of the derivation: (name, symbol) pairs,
+            sorted by name.
     """
 
     name: str
@@ -171,3 +173,4 @@ class Manipulator:
     legs: tuple[Leg, ...]
     home: Home
     fixed_centre: Vector3 | None = None
+    symbols: tuple[tuple[str, str], ...] = ()

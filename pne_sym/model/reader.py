@@ -16,6 +16,7 @@ from pne_sym.model.home import read_home
 from pne_sym.model.legs import is_plane, read_legs
 from pne_sym.model.manipulator import ZERO3, Body, Manipulator, Space, Vector3
 from pne_sym.model.names import read_name
+from pne_sym.model.symbols import read_symbols
 from pne_sym.model.values import vector
 
 FIELDS = (
@@ -28,6 +29,7 @@ FIELDS = (
     "leg_types",
     "legs",
     "home",
+    "symbols",
 )
 LONGEST_TITLE = 120
 STANDARD_GRAVITY = 9.81
@@ -89,6 +91,7 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
         legs=legs,
         home=read_home(table.require("home", "a pose X and displacements q"), space, legs, centre),
         fixed_centre=centre,
+        symbols=read_symbols(table.get("symbols")),
     )
 
 

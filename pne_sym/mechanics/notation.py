@@ -1,0 +1,188 @@
+"""The author's symbols in the place of the engine's, in formulas only.
+
+Names in the code do not change.  What is named after a quantity follows it: the
+rates of a displacement get its dots, a remainder its circle.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pne_sym.derivation import Derivation, names_in
+from pne_sym.model.entry import nearest
+from pne_sym.model.errors import SpecError, show
+from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.symbols import split_symbol
+from pne_sym.vector import TensorSymbol, VectorSymbol
+
+# Quantities whose symbols stand in the report's own sentences and statements.
+_COMMON = frozenset("t t_dot t_ddot omega alpha g a_p S S_dot S_ddot bias".split())
+# Symbols that mean the same in every report, though no quantity of a derivation has them.
+_TAKEN = (
+    r"\mathbf{E} \mathbf{M} \mathbf{Z} \mathbf{H} \mathbf{H}_{k} \mathbf{F} \mathbf{A} \mathbf{T}"
+    r" \boldsymbol\tau \boldsymbol\lambda \tau \lambda X V i j"
+).split()
+# The name of a displacement, and the names of its derivatives.
+_DERIVATIVES = (
+    (re.compile(r"q_(\d.*)"), (r"qd_\1", r"qdd_\1")),
+    (re.compile(r"y_(\d+)_extra(.*)"), (r"yd_\1\2", r"ydd_\1\2")),
+)
+
+
+@dataclass(frozen=True)
+class Mark:
+    r"""An author's symbol as LaTeX.
+
+    >>> Mark("r", "u", bold=True).latex()
+    '\\mathbf{r}_{u}'
+    >>> Mark("\\theta", "", bold=False).latex("dot")
+    '\\dot{\\theta}'
+    """
+
+    base: str
+    sub: str
+    bold: bool
+
+    def latex(self, dots: str = "") -> str:
+        """The symbol, under dots where their command is given."""
+        if self.base.startswith("\\"):
+            text = rf"\boldsymbol{self.base}" if self.bold else self.base
+        elif self.bold:
+            text = rf"\mathbf{{{self.base}}}"
+        else:
+            text = self.base if len(self.base) == 1 else rf"\mathrm{{{self.base}}}"
+        if dots:
+            text = rf"\{dots}{{{text}}}"
+        if not self.sub:
+            return text
+        word = len(self.sub) > 1 and self.sub.isalpha()
+        return text + (rf"_{{\mathrm{{{self.sub}}}}}" if word else f"_{{{self.sub}}}")
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """LaTeX of a quantity, and the field of the author's table it comes from."""
+
+    latex: str
+    key: str
+
+
+def with_symbols(
+    derivation: Derivation, manipulator: Manipulator, equal: Iterable[tuple[str, str]]
+) -> Derivation:
+    """The derivation in the author's symbols.
+
+    Args:
+        derivation: in the engine's notation.
+        manipulator: whose symbols are wanted.
+        equal: pairs of names of the same vector, which may share a symbol.
+
+    Raises:
+        SpecError: a name that the derivation does not have or that keeps its symbol, or
+            a symbol that another quantity has.
+    """
+    if not manipulator.symbols:
+        return derivation
+    places = _places(derivation)
+    bold = _bold(derivation)
+    following: dict[str, Symbol] = {}
+    own: dict[str, Symbol] = {}
+    for name, text in manipulator.symbols:
+        _check_name(manipulator, name, places.keys() & derivation.notation.keys())
+        parts = split_symbol(text)
+        assert parts is not None, text
+        mark = Mark(*parts, bold=name in bold)
+        following |= {n: Symbol(latex, name) for n, latex in _following(name, mark)}
+        own |= {n: Symbol(latex, name) for n, latex in _itself(name, mark)}
+    changed = following | own
+    notation = {
+        name: replace(quantity, latex=changed[name].latex) if name in changed else quantity
+        for name, quantity in derivation.notation.items()
+    }
+    shared = {frozenset(pair) for pair in equal}
+    for name in sorted(changed.keys() & places.keys()):
+        taken = [n for n in places if n in notation and {n, name} not in shared]
+        _refuse_collision(
+            manipulator, name, changed[name], places, {n: notation[n].latex for n in taken}
+        )
+    return replace(derivation, notation=notation)
+
+
+def _check_name(manipulator: Manipulator, name: str, known: Collection[str]) -> None:
+    where = f"symbols.{name}"
+    if name not in known:
+        raise SpecError(
+            manipulator.name,
+            where,
+            f"no quantity {show(name)}{nearest(name, known)}",
+            "a name that occurs in the derivation",
+        )
+    if name in _COMMON or any(name.startswith(f"{common}_") for common in ("S", "a_p", "bias")):
+        raise SpecError(
+            manipulator.name, where, "its symbol is the same in every report", "no such field"
+        )
+
+
+def _itself(name: str, mark: Mark, dots: str = "") -> Iterator[tuple[str, str]]:
+    """A quantity and its remainder."""
+    yield name, mark.latex(dots)
+    yield f"{name}_o", rf"{mark.latex(dots)}^{{\circ}}"
+
+
+def _following(name: str, mark: Mark) -> Iterator[tuple[str, str]]:
+    """The derivatives of a displacement."""
+    for pattern, derivatives in _DERIVATIVES:
+        if match := pattern.fullmatch(name):
+            for dots, derivative in zip(("dot", "ddot"), derivatives, strict=True):
+                yield from _itself(match.expand(derivative), mark, dots)
+
+
+def _refuse_collision(
+    manipulator: Manipulator,
+    name: str,
+    symbol: Symbol,
+    places: Mapping[str, set[str | None]],
+    taken: Mapping[str, str],
+) -> None:
+    """Refuse a symbol that another quantity of the same chapters has."""
+    where, wanted = f"symbols.{symbol.key}", _plain(symbol.latex)
+    if wanted in map(_plain, _TAKEN):
+        problem = f"{symbol.latex} means something in every report"
+        raise SpecError(manipulator.name, where, problem, "another symbol")
+    for other, latex in taken.items():
+        if other == name or _plain(latex) != wanted:
+            continue
+        if {None} in (places[other], places[name]) or (places[other] & places[name]) - {None}:
+            raise SpecError(
+                manipulator.name,
+                where,
+                f"{symbol.latex} is the symbol of {other} as well",
+                f"another symbol, or a symbol for {other}, too",
+            )
+
+
+def _plain(latex: str) -> str:
+    """LaTeX without the braces and blanks that change nothing."""
+    return re.sub(r"[{}\s]", "", latex)
+
+
+def _places(derivation: Derivation) -> dict[str, set[str | None]]:
+    """The leg types (None: the platform) in whose chapters a name occurs."""
+    places: dict[str, set[str | None]] = {}
+    for chapter in derivation.chapters:
+        for equation in chapter.equations:
+            parts: list[Any] = [equation.lhs, equation.rhs, *equation.forms]
+            parts += [value for c in equation.conditions for value in (c.value, c.scale)]
+            for name in {n for part in parts for n in names_in(part)}:
+                places.setdefault(name, set()).add(chapter.leg_type)
+    return places
+
+
+def _bold(derivation: Derivation) -> set[str]:
+    """Names of vectors and tensors."""
+    symbols = [given.symbol for given in derivation.givens]
+    symbols += [equation.lhs for equation in derivation.equations()]
+    return {s.name for s in symbols if isinstance(s, VectorSymbol | TensorSymbol)}
