@@ -10,6 +10,7 @@ PosixPath('generated/stewart')
 from __future__ import annotations
 
 import contextlib
+import json
 import multiprocessing
 import os
 import signal
@@ -55,13 +56,13 @@ def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
 
     Raises:
         SpecError: no such model (the message has the nearest names), or the
-            spec file is at fault.
+            spec file or the object is at fault.
     """
     from pne_sym import manipulators
-    from pne_sym.model.reader import read_spec
+    from pne_sym.model.reader import checked, read_spec
 
     if not isinstance(source, str | os.PathLike):
-        return source
+        return checked(source)
     if isinstance(source, str) and not _is_path(source):
         return manipulators.load(source)
     return read_spec(Path(source))
@@ -77,9 +78,11 @@ def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLik
         SpecError: the source is at fault.
         OutputError: the folder cannot be written.
     """
+    from pne_sym.mechanics.mobility import check_mobility
     from pne_sym.pipeline import compile_model
 
     manipulator = find(source)
+    check_mobility(manipulator)
     return writer.write_model(Path(out), manipulator.name, compile_model(manipulator))
 
 
@@ -99,6 +102,24 @@ def check(
 
     manipulator = find(source)
     return comparison.check_model(Path(out), manipulator.name, compile_model(manipulator))
+
+
+def remarks(compiled: Compiled) -> list[str]:
+    """What there is to know of a manipulator: its mobility, and legs without a closed form.
+
+    Warns with `SpecWarning` where the drives do not hold the mechanism.
+    """
+    from pne_sym.mechanics.mobility import check_mobility
+
+    lines = [str(check_mobility(compiled.manipulator))]
+    manifest = json.loads(compiled.files.get(f"{compiled.manipulator.name}.json", "{}"))
+    for leg_type in manifest.get("leg_types", []):
+        for joint, reason in leg_type.get("no_closed_form", {}).items():
+            lines.append(
+                f"{leg_type['architecture']} legs: joint {joint} has no closed-form inverse "
+                f"kinematics ({reason}); it is found by iteration from q0"
+            )
+    return lines
 
 
 def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator[Compiled]:

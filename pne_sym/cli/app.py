@@ -13,7 +13,7 @@ import typer
 import typer.core
 
 from pne_sym import comparison, writer
-from pne_sym.cli import review
+from pne_sym.cli import review, starter
 from pne_sym.cli.arguments import GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
@@ -71,6 +71,7 @@ EXAMPLES = """
 \b
 Examples:
   pne-gen stewart --out generated/         a model of the catalogue
+  pne-gen new my_robot.toml --legs 6-UPS   a first specification, to be edited
   pne-gen my_robot.toml --out generated/   a manipulator of your own
   pne-gen all --out generated/ --jobs 4    the whole catalogue
   pne-gen check stewart --out generated/   is what stands there up to date?
@@ -178,6 +179,7 @@ def check(
             raise typer.Exit(DIFFERENT)
 
 
+app.command("new")(starter.new)
 app.command("explain")(review.explain)
 
 
@@ -222,14 +224,17 @@ def _find(sources: Sequence[str]) -> list[Manipulator]:
 
 
 def _generate(models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report) -> None:
-    from pne_sym.generation import compile_many
+    from pne_sym.generation import compile_many, remarks
 
     with report.progress(len(models)) as step:
         step.working_on(_names(models))
         for compiled in compile_many(models, jobs):
+            said = remarks(compiled)
             folder = writer.write_model(out, compiled.manipulator.name, compiled.files)
             size = sum(len(text.encode()) for text in compiled.files.values())
             report.line(f"wrote {folder}: {len(compiled.files)} files, {size / 1000:.0f} kB")
+            for line in said:
+                report.line(f"  {line}")
             step.done()
 
 

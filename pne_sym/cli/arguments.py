@@ -11,9 +11,9 @@ from collections.abc import Sequence
 GENERATE = "NAME_OR_SPEC..."
 """Name of the command that is meant where a model stands; no model can have it."""
 
-COMMANDS = ("list", "all", "check", "explain")
-NOT_YET = ("diff", "new", "draw")
-OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage")
+COMMANDS = ("list", "all", "check", "explain", "new")
+NOT_YET = ("diff", "draw")
+OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage", "--legs", "--space")
 _OF_THE_PROGRAM = ("--help", "-h", "--version")
 
 

@@ -124,7 +124,7 @@ def check_mobility(manipulator: Manipulator) -> Mobility:
         )
     elif found.undriven > found.passive:
         free = _count(found.undriven - found.passive, "freedom", "freedoms")
-        problem = f"with all drives held, {free} remain at home; H is singular there"
+        problem = f"all drives held, the mechanism can move at home ({free}): H is singular there"
     if problem:
         warnings.warn(f"{manipulator.name}: legs: {problem}", SpecWarning, stacklevel=2)
     return found

@@ -33,7 +33,7 @@ def test_unknown_second_model_leaves_nothing_written(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("word", ["diff", "new", "draw"])
+@pytest.mark.parametrize("word", ["diff", "draw"])
 def test_reserved_words_without_a_command_yet(word: str) -> None:
     assert_refused(pne_gen(word, "stewart"), f"'{word}' is not available in this version")
     assert not re.search(rf"^  {word}\b", pne_gen("--help").stdout, re.MULTILINE)

@@ -68,9 +68,8 @@ def test_several_models_and_files_at_once(tmp_path: Path) -> None:
 def test_all_writes_the_catalogue(tmp_path: Path) -> None:
     done = pne_gen("all", "--out", tmp_path, "--jobs", "2")
     assert done.returncode == 0, done.stderr
-    assert [line.split(":")[0] for line in done.stdout.splitlines()] == [
-        f"wrote {tmp_path / name}" for name in pne_sym.manipulators.names()
-    ]
+    told = [line.split(":")[0] for line in done.stdout.splitlines() if line[0] != " "]
+    assert told == [f"wrote {tmp_path / name}" for name in pne_sym.manipulators.names()]
 
 
 @pytest.mark.parametrize(

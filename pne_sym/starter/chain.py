@@ -1,0 +1,202 @@
+"""A leg of plausible size from its letters, for a given choice of axes.
+
+The leg frame has x along the leg at zero displacements.  Links are bars along x, telescopes of
+cylinder and rod, and carriages; angles at home keep the leg bent, so that nothing is aligned.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pne_sym.starter.notation import LegGroup, Letter
+
+Axes = tuple[str, ...]
+Plain = dict[str, object]
+
+BEND = (0.9, -1.2, 0.8, -0.9, 0.7, -0.6, 0.5)
+LENGTHS = {0: 0.6, 1: 0.7, 2: 0.45, 3: 0.35}
+CYLINDER: Plain = {
+    "mass": 2.4,
+    "centre_of_mass": [0.18, 0.0, 0.0],
+    "inertia": [0.001, 0.026, 0.026],
+}
+ROD: Plain = {"mass": 1.1, "centre_of_mass": [-0.22, 0.0, 0.0], "inertia": [0.0005, 0.018, 0.018]}
+CARRIAGE: Plain = {"mass": 2.0, "inertia": [0.004, 0.004, 0.004]}
+SHOULDER: Plain = {
+    "mass": 1.5,
+    "centre_of_mass": [0.06, 0.0, 0.0],
+    "inertia": [0.002, 0.004, 0.004],
+}
+SHORT = 0.12
+PITCH = 0.1
+
+
+@dataclass(frozen=True)
+class WrittenJoint:
+    """A joint as the file will have it.
+
+    Attributes:
+        fields: kind, axis or axes, offset, pitch, link.
+        home: displacement of each freedom; what a mirrored leg negates is in `mirrored`.
+        mirrored: for each freedom, whether a mirrored leg has the opposite sign.
+        comment: what it is, for people.
+        letter: of the notation.
+    """
+
+    fields: Plain
+    home: tuple[float, ...]
+    mirrored: tuple[bool, ...]
+    comment: str
+    letter: Letter
+
+
+@dataclass(frozen=True)
+class Chain:
+    """The joints of a leg, and where the platform joint sits on its last link (m, along x)."""
+
+    joints: tuple[WrittenJoint, ...]
+    end: float
+
+
+def axis_choices(letter: Letter, *, plane: bool) -> tuple[Axes, ...]:
+    """Axes that a joint may have in the leg frame, the usual first."""
+    if plane:
+        return (("z",),) if letter.kind == "R" else (("x",), ("y",))
+    return {
+        "R": (("z",), ("x",), ("y",)),
+        "P": (("x",), ("z",), ("y",)),
+        "H": (("x",), ("z",), ("y",)),
+        "C": (("x",), ("z",), ("y",)),
+        "U": (("z", "y"), ("y", "z"), ("x", "z")),
+        "S": (("z", "y", "x"),),
+    }[letter.kind]
+
+
+def build_chain(group: LegGroup, axes: tuple[Axes, ...], side: float) -> Chain:
+    """The chain for one choice of axes.
+
+    Args:
+        group: the legs.
+        axes: of every joint.
+        side: how far legs lean to the side at home, rad.
+    """
+    letters = group.letters
+    bars = _bars(letters, axes)
+    length = LENGTHS.get(bars, 0.3)
+    joints: list[WrittenJoint] = []
+    gap, bends = 0.0, 0
+    for index, (letter, own) in enumerate(zip(letters, axes, strict=True)):
+        telescope = _is_telescope(letters, axes, index)
+        after = _is_telescope(letters, axes, index + 1)
+        bend = BEND[bends % len(BEND)] if bars > 1 else 0.35
+        joint, gap_after = _joint(letter, own, gap, _Place(length, telescope, after, bend, side))
+        bends += any(axis != "x" for axis in own) and letter.kind in "RUS"
+        joints.append(joint)
+        gap = gap_after
+    return Chain(tuple(joints), gap)
+
+
+@dataclass(frozen=True)
+class _Place:
+    length: float
+    telescope: bool
+    before_telescope: bool
+    bend: float
+    side: float
+
+
+def _joint(letter: Letter, axes: Axes, gap: float, place: _Place) -> tuple[WrittenJoint, float]:
+    """A joint and how far along x of its link the next one sits."""
+    fields: Plain = {"kind": letter.kind}
+    if len(axes) > 1:
+        fields["axes"] = list(axes)
+    else:
+        fields["axis"] = axes[0]
+    if gap:
+        fields["offset"] = [gap, 0.0, 0.0]
+    if letter.kind == "H":
+        fields["pitch"] = PITCH
+    if letter.kind in "PHC":
+        home, mirrored = _sliding_home(letter.kind, axes[0], place)
+        link, text, after = _sliding_link(place)
+    else:
+        angles = [_angle(axis, place) for axis in axes]
+        home = tuple(angle for angle, _ in angles)
+        mirrored = tuple(flips for _, flips in angles)
+        link, text, after = _turning_link(axes, place)
+    fields["link"] = link
+    comment = f"{NAMES[letter.kind]} {text}"
+    return WrittenJoint(fields, home, mirrored, comment, letter), after
+
+
+NAMES = {
+    "R": "Revolute joint.",
+    "P": "Prismatic joint.",
+    "H": "Helical joint (screw): the displacement is its angle.",
+    "U": "Universal joint: two revolute axes, the cross is massless.",
+    "C": "Cylindrical joint: turns about and slides along one axis.",
+    "S": "Spherical joint: three revolute axes at one point.",
+}
+
+
+def _sliding_home(
+    kind: str, axis: str, place: _Place
+) -> tuple[tuple[float, ...], tuple[bool, ...]]:
+    way = place.length if place.telescope else 0.1
+    if kind == "P":
+        return (way,), (False,)
+    if kind == "H":
+        return (round(way / PITCH, 6),), (False,)
+    angle, flips = _angle(axis, place)
+    return (angle, way), (flips, False)
+
+
+def _angle(axis: str, place: _Place) -> tuple[float, bool]:
+    """Displacement of a freedom that turns, and whether mirrored legs have the opposite."""
+    if axis == "z":
+        return place.bend, False
+    return (place.side, True) if axis == "y" else (0.2, True)
+
+
+def _sliding_link(place: _Place) -> tuple[Plain, str, float]:
+    if place.telescope:
+        return ROD, "The link is the rod, whose frame slides with the joint.", 0.0
+    if place.before_telescope:
+        return CYLINDER, "The link is the cylinder, x along it.", 0.0
+    return CARRIAGE, "The link is the carriage.", 0.0
+
+
+def _turning_link(axes: Axes, place: _Place) -> tuple[Plain, str, float]:
+    if place.before_telescope:
+        return CYLINDER, "The link is the cylinder, x along the leg.", 0.0
+    if axes == ("x",):
+        return SHOULDER, "The link is short, x along it.", SHORT
+    length = place.length
+    mass = round(2.4 * length, 2)
+    across = round(mass * length**2 / 12 + 0.0005, 4)
+    link: Plain = {
+        "mass": mass,
+        "centre_of_mass": [round(length / 2, 4), 0.0, 0.0],
+        "inertia": [0.0005, across, across],
+    }
+    return link, "The link is a bar, x along it.", length
+
+
+def _bars(letters: tuple[Letter, ...], axes: tuple[Axes, ...]) -> int:
+    """How many long links there are: telescopes, and bars beyond a joint that bends."""
+    found = 0
+    for index, (letter, own) in enumerate(zip(letters, axes, strict=True)):
+        bends = letter.kind in "RUS" and any(axis != "x" for axis in own)
+        if _is_telescope(letters, axes, index) or (
+            bends and not _is_telescope(letters, axes, index + 1)
+        ):
+            found += 1
+    return found
+
+
+def _is_telescope(letters: tuple[Letter, ...], axes: tuple[Axes, ...], index: int) -> bool:
+    """Whether a joint slides along a leg that a joint before it turns."""
+    if not 0 < index < len(letters) or letters[index].kind not in "PHC":
+        return False
+    turning = letters[index - 1].kind in "RUS" and axes[index - 1] != ("x",)
+    return turning and axes[index] == ("x",)

@@ -1,0 +1,229 @@
+"""Choice of axes and extra joints of a leg, so that its freedoms are independent at home."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pne_sym.model.closure import Pose, leg_gap, turned
+from pne_sym.model.entry import Entry
+from pne_sym.model.errors import SpecError
+from pne_sym.model.joints import read_joint
+from pne_sym.model.manipulator import (
+    IDENTITY3,
+    ZERO3,
+    Joint,
+    JointKind,
+    Leg,
+    PlatformJoint,
+    PlatformJointKind,
+    Vector3,
+)
+from pne_sym.starter.chain import Axes, Chain, axis_choices, build_chain
+from pne_sym.starter.notation import PLATFORM, SOURCE, LegGroup
+
+Array = npt.NDArray[np.float64]
+
+GOOD = 0.2
+"""Independence of a leg's freedoms (0 dependent, 1 orthogonal) that ends the search."""
+LEAST = 0.02
+_MOST_TRIED = 3000
+_DIRECTIONS: dict[str, Vector3] = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A leg at home in its own frame.
+
+    Attributes:
+        chain: its joints as written.
+        extra: freedoms that are coordinates of their own.
+        idle: those of them that do not move the platform joint at all.
+        axis_link: of a platform joint U or R in space, name of a direction.
+        axis_leg: the platform's axis of it, in the leg frame.
+        tip: the platform joint in the leg frame, m.
+        mirrored: whether this is the mirror image.
+    """
+
+    chain: Chain
+    extra: tuple[bool, ...]
+    idle: int
+    axis_link: str
+    axis_leg: Array
+    tip: Array
+    mirrored: bool = False
+
+    @property
+    def home(self) -> tuple[float, ...]:
+        """Displacements of all freedoms."""
+        return displacements(self.chain, mirrored=self.mirrored)
+
+
+def choose_shape(group: LegGroup, *, plane: bool, side: float) -> Shape:
+    """The first usual choice of axes whose freedoms are well independent, else the best.
+
+    Raises:
+        SpecError: freedoms that are always dependent, or too few marked extra.
+    """
+    best: tuple[float, Shape] | None = None
+    tried = itertools.islice(_candidates(group, plane=plane), _MOST_TRIED)
+    for axes, axis_link in tried:
+        chain = build_chain(group, axes, side)
+        score, shape = _judged(group, chain, axis_link, plane=plane)
+        if best is None or score > best[0] + 1e-9:
+            best = (score, shape)
+        if score >= GOOD:
+            break
+    assert best is not None
+    if best[0] < LEAST:
+        raise SpecError(
+            SOURCE,
+            "",
+            f"the freedoms of a {group.plain} leg are dependent however its axes are laid",
+            "a chain without superfluous joints, or the surplus marked extra by *",
+        )
+    return best[1]
+
+
+def reshaped(shape: Shape, *, mirrored: bool, plane: bool, platform: str) -> Shape:
+    """The same leg or its mirror image, with tip and axes at its own home."""
+    tip, frame = _end(shape.chain, plane=plane, mirrored=mirrored)
+    axis_leg = _platform_axis(platform, frame, shape.axis_link)
+    return Shape(
+        shape.chain, shape.extra, shape.idle, shape.axis_link, axis_leg, tip, mirrored=mirrored
+    )
+
+
+def displacements(chain: Chain, *, mirrored: bool) -> tuple[float, ...]:
+    """Displacements of all freedoms at home."""
+    return tuple(
+        -value if mirrored and flips else value
+        for joint in chain.joints
+        for value, flips in zip(joint.home, joint.mirrored, strict=True)
+    )
+
+
+def freedoms(chain: Chain, *, plane: bool) -> tuple[Joint, ...]:
+    """The joints with one freedom each that the written ones stand for."""
+    return tuple(
+        joint
+        for written in chain.joints
+        for joint in read_joint(Entry(SOURCE, "", in_space(written.fields, plane)), plane=plane)
+    )
+
+
+def in_space(fields: dict[str, object], plane: bool) -> dict[str, object]:
+    """The fields as they are, or with what the plane has."""
+    if not plane:
+        return fields
+    result = dict(fields)
+    if result["kind"] == "R":
+        result.pop("axis", None)
+    if isinstance(offset := result.get("offset"), list):
+        result["offset"] = offset[:2]
+    if isinstance(link := result.get("link"), dict):
+        flat = dict(link)
+        if isinstance(centre := flat.get("centre_of_mass"), list):
+            flat["centre_of_mass"] = centre[:2]
+        flat["inertia"] = flat["inertia"][2]
+        result["link"] = flat
+    return result
+
+
+def _candidates(group: LegGroup, *, plane: bool) -> Iterator[tuple[tuple[Axes, ...], str]]:
+    """Axes of all joints, and of the platform joint; the first joint varies fastest."""
+    choices = [axis_choices(letter, plane=plane) for letter in group.letters]
+    ends = ("",) if plane or group.platform == "S" else ("y", "z", "x")
+    for end in ends:
+        for reverse in itertools.product(*reversed(choices)):
+            yield tuple(reversed(reverse)), end
+
+
+def _judged(group: LegGroup, chain: Chain, axis_link: str, *, plane: bool) -> tuple[float, Shape]:
+    """Independence of the freedoms, and the shape with its extra joints chosen."""
+    tip, frame = _end(chain, plane=plane, mirrored=False)
+    axis_leg = _platform_axis(group.platform, frame, axis_link)
+    columns = _columns(group, chain, axis_link, axis_leg, tip, plane=plane)
+    sizes = np.linalg.norm(columns, axis=0)
+    still = sizes < 1e-9
+    columns = columns / np.where(still, 1.0, sizes)
+    conditions = 2 if plane else 3 + PLATFORM[group.platform]
+    score, extra = -1.0, (False,) * columns.shape[1]
+    for chosen in _extra_sets(group, columns.shape[1], conditions):
+        rest = columns[:, [k for k, is_extra in enumerate(chosen) if not is_extra]]
+        worst = float(np.linalg.svd(rest, compute_uv=False)[-1]) if rest.size else 0.0
+        if worst > score + 1e-9:
+            score, extra = worst, chosen
+    idle = sum(bool(a and b) for a, b in zip(extra, still, strict=True))
+    return score, Shape(chain, extra, idle, axis_link, axis_leg, tip)
+
+
+def _extra_sets(group: LegGroup, count: int, conditions: int) -> Iterator[tuple[bool, ...]]:
+    """The marked extra freedoms, or every choice of as many as are surplus."""
+    marked = []
+    for letter in group.letters:
+        size = {"R": 1, "P": 1, "H": 1, "U": 2, "C": 2, "S": 3}[letter.kind]
+        marked += [False] * (size - 1) + [letter.extra]
+    surplus = max(0, count - conditions)
+    if any(marked):
+        if sum(marked) < surplus:
+            raise SpecError(
+                SOURCE,
+                "",
+                f"{count - sum(marked)} freedoms of a {group.plain} leg that are not marked extra",
+                f"at most {conditions}: {surplus} marked by *, or none to have them chosen",
+            )
+        yield tuple(marked)
+        return
+    order = [*range(1, count), 0]
+    for chosen in itertools.combinations(order, surplus):
+        yield tuple(k in chosen for k in range(count))
+
+
+def _columns(
+    group: LegGroup, chain: Chain, axis_link: str, axis_leg: Array, tip: Array, *, plane: bool
+) -> Array:
+    """Rates of the closure gap by each freedom, for a platform parallel to the leg frame."""
+    kind = PlatformJointKind.SPHERICAL if plane else PlatformJointKind(group.platform)
+    x, y, z = axis_leg.tolist()
+    platform = (
+        PlatformJoint(kind, (chain.end, 0.0, 0.0), _DIRECTIONS[axis_link], (x, y, z))
+        if axis_link
+        else PlatformJoint(kind, (chain.end, 0.0, 0.0))
+    )
+    leg = Leg(ZERO3, IDENTITY3, freedoms(chain, plane=plane), platform, ZERO3)
+    _, by_q, _ = leg_gap(leg, np.array(displacements(chain, mirrored=False)), Pose(tip, np.eye(3)))
+    return by_q[:2] if plane else by_q
+
+
+def _end(chain: Chain, *, plane: bool, mirrored: bool) -> tuple[Array, Array]:
+    """The platform joint and the last link's axes, in the leg frame at home."""
+    point, frame = np.zeros(3), np.eye(3)
+    joints = freedoms(chain, plane=plane)
+    for joint, x in zip(joints, displacements(chain, mirrored=mirrored), strict=True):
+        point = point + frame @ np.array(joint.offset)
+        axis = frame @ np.array(joint.axis)
+        if joint.kind is JointKind.PRISMATIC:
+            point = point + x * axis
+        else:
+            point = point + joint.pitch * x * axis
+            frame = frame @ turned(joint.axis, x)
+    return point + frame @ np.array([chain.end, 0.0, 0.0]), frame
+
+
+def _platform_axis(platform: str, frame: Array, axis_link: str) -> Array:
+    """The axis fixed in the platform: equal to the link's (R), or perpendicular to it (U)."""
+    if not axis_link:
+        return np.zeros(3)
+    own: Array = frame @ np.array(_DIRECTIONS[axis_link])
+    if platform == "R":
+        return own
+    for name in "zyx":
+        if abs(own @ np.array(_DIRECTIONS[name])) < 1e-9:
+            return np.array(_DIRECTIONS[name])
+    other: Array = frame @ np.array(_DIRECTIONS["x" if axis_link == "z" else "z"])
+    return other

@@ -1,0 +1,217 @@
+"""The arrangement of legs: of a few usual ones, one whose drives hold the platform well."""
+
+from __future__ import annotations
+
+import itertools
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from pne_sym.mechanics.mobility import drive_quality
+from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.legs import is_plane
+from pne_sym.model.manipulator import Manipulator, Space
+from pne_sym.model.reader import from_mapping
+from pne_sym.starter.choose import Shape, choose_shape, in_space
+from pne_sym.starter.drives import Flags, choose_drives, other_drives
+from pne_sym.starter.notation import FREEDOMS, SOURCE, LegGroup, is_marked
+from pne_sym.starter.place import HEIGHT, Placed, leg_names, place_legs
+
+Plain = dict[str, object]
+
+HOME_X: dict[Space, list[float]] = {
+    Space.POINT: [0.0, 0.0],
+    Space.PLANAR: [0.0, 0.0, 0.0],
+    Space.SPATIAL: [0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0],
+    Space.TRANSLATIONAL: [0.0, 0.0, 0.75],
+    Space.SPHERICAL: [0.0, 0.0, 0.0, 1.0],
+}
+_TILTS = (30.0, 60.0, -30.0, 90.0, 0.0, 15.0)
+_SIDES = (-0.45, 0.45, 0.25, 0.7)
+_HELD = 1e-6
+_GOOD = 0.15
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A specification in the making.
+
+    Attributes:
+        groups: of the notation.
+        shapes: of a leg of each group.
+        drives: for each group, whether each freedom is driven.
+        spec: as plain data.
+    """
+
+    groups: tuple[LegGroup, ...]
+    shapes: tuple[Shape, ...]
+    drives: tuple[Flags, ...]
+    spec: Plain
+
+
+def default_space(groups: tuple[LegGroup, ...]) -> Space:
+    """The plane where all joints can move in it and legs are short; else space."""
+    flat = all(
+        group.platform == "R"
+        and group.freedoms <= 3
+        and all(letter.kind in "RP" for letter in group.letters)
+        for group in groups
+    )
+    return Space.PLANAR if flat else Space.SPATIAL
+
+
+def make_plan(name: str, title: str, groups: tuple[LegGroup, ...], space: Space) -> Plan:
+    """The arrangement, of a few usual ones, whose drives hold the platform best.
+
+    Raises:
+        SpecError: the legs do not fit the space, or their freedoms are dependent.
+    """
+    _check_letters(groups, space)
+    draft = _Draft(name, title, groups, space)
+    best = _first_good(draft.plans(None))
+    if best[0] < _HELD and not is_marked(groups):
+        other = _first_good(draft.plans(best[1]))
+        best = other if other[0] >= _HELD else best
+    return best[1]
+
+
+def _first_good(plans: Iterator[tuple[float, Plan]]) -> tuple[float, Plan]:
+    """The first plan whose drives hold the platform well, else the best."""
+    best = next(plans)
+    for found in plans:
+        if best[0] >= _GOOD:
+            break
+        if found[0] > best[0] + _HELD:
+            best = found
+    return best
+
+
+@dataclass(frozen=True)
+class _Draft:
+    """What is asked for, and the arrangements that are tried for it."""
+
+    name: str
+    title: str
+    groups: tuple[LegGroup, ...]
+    space: Space
+
+    def plans(self, poor: Plan | None) -> Iterator[tuple[float, Plan]]:
+        """Arrangements with how well the drives hold the platform.
+
+        Args:
+            poor: a plan whose drives do not; then others are tried.
+        """
+        plane = is_plane(self.space)
+        for side in _SIDES[:1] if plane else _SIDES:
+            shapes = tuple(choose_shape(group, plane=plane, side=side) for group in self.groups)
+            if poor:
+                drives = list(other_drives(poor.drives, shapes))
+            else:
+                drives = [choose_drives(self.groups, shapes, self._free(shapes))]
+            for (tilt, mirror), driven in itertools.product(_options(plane), drives):
+                legs = place_legs(self.groups, shapes, self.space, tilt=tilt, mirror=mirror)
+                yield self._plan(shapes, driven, legs)
+
+    def _plan(
+        self, shapes: tuple[Shape, ...], drives: tuple[Flags, ...], legs: list[Placed]
+    ) -> tuple[float, Plan]:
+        spec = _spec(self.name, self.title, self.groups, shapes, drives, legs, self.space)
+        return drive_quality(_read(spec)), Plan(self.groups, shapes, drives, spec)
+
+    def _free(self, shapes: tuple[Shape, ...]) -> Manipulator:
+        """The mechanism without any drive."""
+        tilt, mirror = next(_options(is_plane(self.space)))
+        legs = place_legs(self.groups, shapes, self.space, tilt=tilt, mirror=mirror)
+        none = tuple((False,) * len(shape.extra) for shape in shapes)
+        return _read(_spec(self.name, self.title, self.groups, shapes, none, legs, self.space))
+
+
+def _read(spec: Plain) -> Manipulator:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SpecWarning)
+        return from_mapping(spec, SOURCE)
+
+
+def _options(plane: bool) -> Iterator[tuple[float, bool]]:
+    return itertools.product(_TILTS if plane else (0.0,), (False,) if plane else (True, False))
+
+
+def _check_letters(groups: tuple[LegGroup, ...], space: Space) -> None:
+    if not is_plane(space):
+        return
+    for group in groups:
+        wrong = [letter.kind for letter in group.letters if letter.kind not in "RP"]
+        wrong += [group.platform] if group.platform == "U" else []
+        if wrong:
+            raise SpecError(
+                SOURCE,
+                "",
+                f"joint {wrong[0]!r} of {group.plain} leaves the plane",
+                f"joints R and P in the space '{space}', or another --space",
+            )
+
+
+def _spec(
+    name: str,
+    title: str,
+    groups: tuple[LegGroup, ...],
+    shapes: tuple[Shape, ...],
+    drives: tuple[Flags, ...],
+    legs: list[Placed],
+    space: Space,
+) -> Plain:
+    plane = is_plane(space)
+    types = {
+        type_name: _leg_type(group, shape, driven, plane=plane)
+        for type_name, group, shape, driven in zip(
+            leg_names(groups), groups, shapes, drives, strict=True
+        )
+    }
+    spread = [shape for g, shape in zip(groups, shapes, strict=True) for _ in range(g.count)]
+    extra = [
+        value
+        for shape, leg in zip(spread, legs, strict=True)
+        for value, is_extra in zip(leg.q, shape.extra, strict=True)
+        if is_extra
+    ]
+    spec: Plain = {
+        "name": name,
+        "title": title,
+        "space": str(space),
+        "gravity": [0.0, -9.81] if plane else [0.0, 0.0, -9.81],
+    }
+    if space is Space.SPHERICAL:
+        spec["fixed_centre"] = [0.0, 0.0, HEIGHT]
+    spec["platform"] = _platform(space)
+    spec["leg_types"] = types
+    spec["legs"] = [leg.table for leg in legs]
+    spec["home"] = {"X": HOME_X[space] + extra, "q": [list(leg.q) for leg in legs]}
+    return spec
+
+
+def _platform(space: Space) -> Plain:
+    if space is Space.POINT:
+        return {"mass": 0.5}
+    if is_plane(space):
+        return {"mass": 4.0, "centre_of_mass": [0.0, 0.0], "inertia": 0.05}
+    return {"mass": 12.0, "centre_of_mass": [0.0, 0.0, 0.04], "inertia": [0.35, 0.35, 0.6]}
+
+
+def _leg_type(group: LegGroup, shape: Shape, driven: Flags, *, plane: bool) -> Plain:
+    end: Plain = {"kind": group.platform}
+    if shape.chain.end:
+        end["offset"] = [shape.chain.end, 0.0] if plane else [shape.chain.end, 0.0, 0.0]
+    if shape.axis_link:
+        end["axis_link"] = shape.axis_link
+    joints, at = [], 0
+    for written in shape.chain.joints:
+        size = FREEDOMS[written.letter.kind]
+        fields = dict(in_space(written.fields, plane))
+        link = fields.pop("link")
+        for mark, values in (("actuated", driven), ("extra", shape.extra)):
+            own = list(values[at : at + size])
+            if any(own):
+                fields[mark] = own[0] if size == 1 else own
+        joints.append({**fields, "link": link})
+        at += size
+    return {"platform_joint": end, "joints": joints}
