@@ -1,0 +1,283 @@
+"""The public functions of the C module: what each computes, its arguments."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.describe import Described
+from pne_sym.program.count import count_function
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An input or output array of a function.
+
+    Attributes:
+        name: of the argument.
+        size: number of entries of one state.
+        shape: for people.
+        optional: NULL stands for "none".
+    """
+
+    name: str
+    size: int
+    shape: str = ""
+    optional: bool = False
+
+    @property
+    def text(self) -> str:
+        """The argument with its shape."""
+        return f"{self.name} ({self.shape or self.size}{', or NULL' if self.optional else ''})"
+
+
+@dataclass(frozen=True)
+class Api:
+    """A public function; there is one for a state and one for a batch.
+
+    Attributes:
+        name: without prefix.
+        meaning: what it computes.
+        inputs, outputs: arrays, one state after another in a batch.
+        arrays: program function and its arrays that are the outputs, or "" where
+            a template computes them.
+        lanes: whether the batch runs several states side by side.
+        has_model: whether the prepared model is the first argument.
+    """
+
+    name: str
+    meaning: str
+    inputs: tuple[Argument, ...]
+    outputs: tuple[Argument, ...]
+    arrays: tuple[str, ...] = ()
+    lanes: bool = False
+    has_model: bool = True
+
+
+def api_table(bundle: Bundle, d: Described) -> tuple[Api, ...]:
+    """All public functions, in the order of the header."""
+    return tuple(
+        _counted(bundle, a)
+        for a in (*_program_functions(bundle, d), *_solved(d), *_derived(d), *_helpers(d))
+    )
+
+
+def _vectors(d: Described) -> dict[str, Argument]:
+    n = d.sizes
+    sizes = {"X": "NQ", "V": "NV", "A": "NV", "tau": "NU", "q_actuated": "NU", "X0": "NQ"}
+    vectors = {name: Argument(name, n[key], key) for name, key in sizes.items()}
+    return vectors | {"wrench": Argument("wrench", n["NW"], "NW", optional=True)}
+
+
+def _program_functions(bundle: Bundle, d: Described) -> list[Api]:
+    """What the program computes as it is."""
+    n, v, functions = d.sizes, _vectors(d), bundle.program.functions
+    X, V, A = v["X"], v["V"], v["A"]
+    M, Z = Argument("M", n["NV"] ** 2, "NV x NV"), Argument("Z", n["NV"], "NV")
+    H, Hk = (
+        Argument("H", n["NV"] * n["NU"], "NV x NU"),
+        Argument("Hk", n["NV"] * n["NC"], "NV x NC"),
+    )
+    rows = [
+        Api("M", "Inertia matrix M.", (X,), (M,), ("M",)),
+        Api("Z", "Velocity and gravity terms Z.", (X, V), (Z,), ("Z",)),
+        Api("H", "Force transformation H: actuators to task space.", (X,), (H,), ("H",)),
+        Api("Hk", "Directions Hk of the constraint forces lambda.", (X,), (Hk,), ("Hk",)),
+        Api(
+            "dynamics", "M, Z and H together, sharing the work.", (X, V), (M, Z, H), ("M", "Z", "H")
+        ),
+        Api(
+            "constraints",
+            "Residuals of the constraints [m]; zero where the loops close.",
+            (X,),
+            (Argument("residual", n["NC"], "NC"),),
+            ("constraints",),
+        ),
+        Api(
+            "constraint_bias",
+            "The vector bias in Hk^T A + bias = 0.",
+            (X, V),
+            (Argument("bias", n["NC"], "NC"),),
+            ("constraint_bias",),
+        ),
+        Api(
+            "inverse_kinematics",
+            "Displacements q of all joints, on the assembly branch of home.",
+            (X,),
+            (Argument("q", n["NJ"], "NJ"),),
+            ("q",),
+        ),
+        Api(
+            "joint_rates",
+            "Rates of all joints.",
+            (X, V),
+            (Argument("rates", n["NJ"], "NJ"),),
+            ("qd",),
+        ),
+        Api(
+            "joint_accelerations",
+            "Accelerations of all joints.",
+            (X, V, A),
+            (Argument("accelerations", n["NJ"], "NJ"),),
+            ("qdd",),
+        ),
+    ]
+    return [replace(a, lanes=True) for a in rows if a.name in functions]
+
+
+def _solved(d: Described) -> list[Api]:
+    """What needs the solution of linear equations."""
+    n, v = d.sizes, _vectors(d)
+    X, V, A, wrench = v["X"], v["V"], v["A"], v["wrench"]
+    multipliers = (Argument("lambda", n["NC"], "NC"),) if d.is_constrained else ()
+    forces = "Actuator forces tau" + (" and multipliers lambda" if d.is_constrained else "")
+    least = ", of least norm" if d.is_redundant else ""
+    found = [
+        Api(
+            "inverse_dynamics",
+            f"{forces} for the acceleration A, by Eq. 3{least}.",
+            (X, V, A, wrench),
+            (v["tau"], *multipliers),
+            lanes=not d.is_redundant,
+        ),
+        Api(
+            "forward_dynamics",
+            "Acceleration A under the actuator forces tau and the wrench.",
+            (X, V, v["tau"], wrench),
+            (A, *multipliers),
+            lanes=True,
+        ),
+    ]
+    if d.is_redundant:
+        weights = Argument("weights", n["NU"], "NU, positive")
+        found.insert(
+            1,
+            Api(
+                "inverse_dynamics_weighted",
+                f"{forces} of least sum of weights tau^2.",
+                (X, V, A, wrench, weights),
+                found[0].outputs,
+            ),
+        )
+    if n["NU"] > len(d.driven_rows):
+        columns = n["NU"] - len(d.driven_rows)
+        found.append(
+            Api(
+                "null_space",
+                "Orthonormal basis of the tau with H tau = 0.",
+                (X,),
+                (Argument("basis", n["NU"] * columns, f"NU x {columns}"),),
+            )
+        )
+    return found
+
+
+def _derived(d: Described) -> list[Api]:
+    """What is made of other functions."""
+    wide = 6 if d.coordinates.transmits_moments else 3
+    kind = "Force, then moment," if d.coordinates.transmits_moments else "Force"
+    n, v = d.sizes, _vectors(d)
+    X, V, A, wrench = v["X"], v["V"], v["A"], v["wrench"]
+    found = [
+        Api(
+            "complete_acceleration",
+            "A with the entries of undriven extra coordinates taken from their own rows.",
+            (X, V, A),
+            (Argument("completed", n["NV"], "NV"),),
+        ),
+        Api(
+            "leg_reactions",
+            f"{kind} of each leg on the platform at its platform joint, base axes.",
+            (X, V, A, wrench),
+            (Argument("forces", wide * d.legs, f"{d.legs} x {wide}"),),
+        ),
+        Api(
+            "energy",
+            "Kinetic and potential energy; the latter is zero at the base origin.",
+            (X, V),
+            (Argument("kinetic", 1), Argument("potential", 1)),
+        ),
+        Api(
+            "forward_kinematics",
+            "X at which the driven joints stand at q_actuated, by Gauss-Newton "
+            "from X0; extra coordinates that the drives do not determine stay.",
+            (v["q_actuated"], v["X0"]),
+            (X,),
+        ),
+    ]
+    if d.is_constrained:
+        found.append(
+            Api(
+                "project",
+                "The nearest pose on which the constraints hold.",
+                (X,),
+                (Argument("projected", n["NQ"], "NQ"),),
+            )
+        )
+    return found
+
+
+def _helpers(d: Described) -> list[Api]:
+    """Helpers for poses, where the space has rotation."""
+    if not d.has_rotation:
+        return []
+    n, v = d.sizes, _vectors(d)
+    side = 3 if d.has_quaternion else 2
+    position = n["NQ"] - len(d.coordinates.extras) - (4 if d.has_quaternion else 1)
+    R = Argument("R", side * side, f"{side} x {side}")
+    t = Argument("t", position, str(position), optional=position == 0)
+    zero = "; extra coordinates zero" if d.has_extras else ""
+    found = [
+        Api("rotation", "base_R_platform; a quaternion need not be normalised.", (v["X"],), (R,)),
+        Api(
+            "pose",
+            f"X of the platform at origin t with rotation matrix R{zero}.",
+            (t, R),
+            (v["X"],),
+        ),
+        Api(
+            "X_dot",
+            "Rate of X at the velocity V.",
+            (v["X"], v["V"]),
+            (Argument("X_dot", n["NQ"], "NQ"),),
+        ),
+    ]
+    if d.has_quaternion:
+        found.insert(
+            2,
+            Api(
+                "pose_from_rpy",
+                "X from roll, pitch, yaw about the fixed axes x, y, z, in that order.",
+                (t, Argument("rpy", 3)),
+                (v["X"],),
+            ),
+        )
+    return [replace(a, has_model=False) for a in found]
+
+
+_WORK = {
+    "inverse_dynamics": "required",
+    "inverse_dynamics_weighted": "required",
+    "forward_dynamics": "dynamics",
+    "leg_reactions": "legs",
+}
+
+
+def _counted(bundle: Bundle, api: Api) -> Api:
+    """The function with its operation counts in the meaning."""
+    name = _WORK.get(api.name, api.name)
+    if name not in bundle.program.functions:
+        return api
+    n = count_function(bundle.program.functions[name], bundle.leg_counts)
+    also = {
+        "required": "; the solution of the linear equations apart",
+        "dynamics": ""
+        if api.name == "dynamics"
+        else "; the solution of the linear equations apart",
+        "legs": "; inverse dynamics apart",
+    }.get(name, "")
+    return replace(
+        api,
+        meaning=f"{api.meaning}  {n.mul} mul, {n.add} add, {n.div} div, {n.sqrt} sqrt, "
+        f"{n.trig} trig{also}.",
+    )

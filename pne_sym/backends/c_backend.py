@@ -1,0 +1,157 @@
+"""The C back end: a header and a source file in C99 that need libm only."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_api import api_table
+from pne_sym.backends.c_calls import ApiWriter
+from pne_sym.backends.c_functions import LANES, function_text
+from pne_sym.backends.c_model import (
+    default_values,
+    model_fields,
+    parameter_checks,
+    parameter_fields,
+    prepare_body,
+)
+from pne_sym.backends.c_text import Routine, wrapped
+from pne_sym.backends.describe import Described, describe
+from pne_sym.backends.templating import render
+
+
+@dataclass(frozen=True)
+class CView:
+    """Ready strings and numbers for the templates.
+
+    Attributes:
+        coordinates: contents of the flat vectors, lines of the header's comment.
+        parameters, model: members of the structures.
+        prototypes, definitions: lines of every public function.
+        defaults, home_x, home_q: initialisers.
+        checks, prepare: statements of the preparation.
+        functions: texts of the functions of the program.
+        calls: calls of such functions in templates, by purpose.
+        driven: number of rows on which drives act.
+        padded: sizes of linear systems, padded, by purpose.
+        big: largest number of rows or columns of a least-squares problem.
+        q0: where the quaternion begins in X.
+        driven_joints, turning_drives, actuator_legs: index tables.
+        lanes: number of states that run side by side.
+    """
+
+    coordinates: tuple[str, ...]
+    parameters: tuple[str, ...]
+    model: tuple[str, ...]
+    prototypes: tuple[tuple[str, ...], ...]
+    definitions: tuple[tuple[str, ...], ...]
+    defaults: tuple[str, ...]
+    home_x: str
+    home_q: str
+    checks: tuple[str, ...]
+    prepare: tuple[str, ...]
+    functions: tuple[str, ...]
+    calls: dict[str, str]
+    driven: int
+    padded: dict[str, int]
+    big: int
+    q0: int
+    driven_joints: tuple[int, ...]
+    turning_drives: tuple[int, ...]
+    actuator_legs: tuple[int, ...]
+    lanes: int = LANES
+
+
+class CBackend:
+    """Emits NAME.h and NAME.c."""
+
+    name = "c"
+
+    def emit(self, bundle: Bundle) -> dict[str, str]:
+        """File name -> text."""
+        d = describe(bundle)
+        if d.is_numeric:
+            return {}
+        view = self.view(bundle)
+        return {
+            f"{bundle.name}.h": render("c/header.h.jinja", view=view, d=d),
+            f"{bundle.name}.c": render("c/source.c.jinja", view=view, d=d),
+        }
+
+    def view(self, bundle: Bundle) -> CView:
+        """What the templates print."""
+        d, c, n = describe(bundle), bundle.coordinates, bundle.coordinates.sizes
+        functions, runs = _functions(bundle, d)
+        api = [ApiWriter(bundle.name, a) for a in api_table(bundle, d)]
+        driven = tuple(c.joints.index(a) for a in c.actuators)
+        free = len(d.free_rows)
+        return CView(
+            coordinates=_coordinate_lines(d),
+            parameters=tuple(parameter_fields(bundle)),
+            model=tuple(model_fields(bundle)),
+            prototypes=tuple(tuple(a.prototypes()) for a in api),
+            definitions=tuple(tuple(a.definitions()) for a in api),
+            defaults=tuple(default_values(bundle)),
+            home_x=", ".join(f"R({v})" for v in c.home[0]),
+            home_q=", ".join(f"R({v})" for v in c.home[1]),
+            checks=tuple(parameter_checks(bundle)),
+            prepare=tuple(prepare_body(bundle)),
+            functions=functions,
+            calls=_calls(runs),
+            driven=len(d.driven_rows),
+            padded={
+                "drive": _padded(len(d.driven_rows)),
+                "forward": _padded(n["NV"] + n["NC"]),
+                "free": _padded(free),
+            },
+            big=max(n["NV"], n["NU"] + n["NC"], len(d.driven_rows)),
+            q0=c.pose.index("qx") if c.has_quaternion else 0,
+            driven_joints=driven,
+            turning_drives=tuple(k for k, j in enumerate(driven) if c.turning[j]),
+            actuator_legs=tuple(leg for leg, _ in c.actuators),
+        )
+
+
+def _padded(n: int) -> int:
+    """Length of a row of a system of n equations with its right side, a multiple of 4."""
+    return (n + 4) // 4 * 4
+
+
+def _coordinate_lines(d: Described) -> tuple[str, ...]:
+    named = (
+        ("X", d.pose_text),
+        ("V, A", d.rate_text),
+        ("tau", d.tau_text),
+        ("wrench", d.wrench_text),
+    )
+    return tuple(line for name, text in named for line in wrapped(f"{name}: {text}", "    "))
+
+
+def _functions(bundle: Bundle, d: Described) -> tuple[tuple[str, ...], dict[str, Routine]]:
+    """Texts of the program's functions with what evaluates them, and the routines that run them."""
+    texts, runs = [], {}
+    public = {a.name: a for a in api_table(bundle, d) if a.arrays}
+    for function in bundle.program.functions.values():
+        text, runs[function.name] = function_text(bundle, function)
+        if function.name in public:
+            writer = ApiWriter(bundle.name, public[function.name])
+            text += "\n\n" + "\n".join(writer.any(bundle, runs[function.name]))
+        texts.append(text)
+    return tuple(texts), runs
+
+
+def _calls(runs: dict[str, Routine]) -> dict[str, str]:
+    """Calls of the program's functions as the templates need them."""
+    one = {"w": "1"}
+    found = {
+        "required": runs["required"].call(required="force"),
+        "required_one": runs["required"].call(required="force", **one),
+        "dynamics": runs["dynamics"].call(),
+        "M_one": runs["M"].call(**one),
+        "Z_one": runs["Z"].call(**one),
+        "legs_one": runs["legs"].call(**one),
+        "potential_one": runs["potential"].call(potential="energies + 1", **one),
+    }
+    if "constraint_bias" in runs:
+        found["constraint_bias"] = runs["constraint_bias"].call()
+    return found

@@ -1,0 +1,149 @@
+"""Parameters and prepared model in C: structures, defaults, checks, preparation."""
+
+from __future__ import annotations
+
+import sympy as sp
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_parts import statements, symbols_of
+from pne_sym.backends.c_text import CPrinter, c_name, comment, indented, listing, statement
+from pne_sym.backends.describe import FieldView, equation_titles, field_views
+from pne_sym.derivation import ParameterField
+from pne_sym.program.ir import Block
+
+
+def _dimensions(shape: tuple[int, ...]) -> str:
+    return "".join(f"[{n}]" for n in shape)
+
+
+def parameter_fields(bundle: Bundle) -> list[str]:
+    """Members of the structure of parameters, each with its meaning and unit."""
+    lines = []
+    for f in field_views(bundle):
+        lines += comment(f"{f.meaning} [{f.unit}]")
+        lines.append(f"{bundle.name}_real {f.name}{_dimensions(f.shape)};")
+    return lines
+
+
+def default_values(bundle: Bundle) -> list[str]:
+    """Initialisers of the default parameters, one line per leg."""
+    lines = []
+    for f in field_views(bundle):
+        if not f.per_leg:
+            lines.append(f"{_literal(f.rows[0])},  /* {f.name} */")
+            continue
+        lines += [f"{{  /* {f.name} */", *(f"    {_literal(row)}," for row in f.rows), "},"]
+    return lines
+
+
+def _literal(row: str) -> str:
+    """A nested list of numbers in Python as an initialiser of the real type."""
+    text = row.replace("[", "{").replace("]", "}")
+    parts = text.replace("{", "{ ").replace("}", " }").replace(",", " ,").split()
+    return "".join(p if p in "{}" else f"{p} " if p == "," else f"R({p})" for p in parts)
+
+
+def model_fields(bundle: Bundle) -> list[str]:
+    """Members of the prepared model: shared values, then arrays over the legs of a type."""
+    real, program = f"{bundle.name}_real", bundle.program
+    shared = [c_name(n) for n, leg in program.prepared if not leg]
+    lines = listing(f"{real} ", shared, ";", "        ") if shared else []
+    for leg, count in bundle.leg_counts.items():
+        own = [f"{c_name(n)}[{count}]" for n, of in program.prepared if of == leg]
+        if own:
+            lines += [*comment(f"legs of type {leg}"), *listing(f"{real} ", own, ";", "        ")]
+    return lines or [f"{real} none;"]
+
+
+# ---- preparation --------------------------------------------------------------------------
+
+
+class _Preparation:
+    def __init__(self, bundle: Bundle) -> None:
+        self.bundle = bundle
+        self.printer = CPrinter()
+        self.titles = equation_titles(bundle.derivation)
+
+    def body(self) -> list[str]:
+        """Statements that compute the prepared model from the parameters."""
+        lines: list[str] = []
+        blocks = self.bundle.program.prepare
+        totals = [str(target) for block in blocks for target, _ in block.sums]
+        lines += [f"real {c_name(n)} = 0;" for n in totals]
+        shared = set().union(*(symbols_of(b) for b in blocks)) if blocks else set()
+        lines += self._parameters(shared, None)
+        for block in blocks:
+            lines += self._legs(block) if block.leg_type else self._once(block)
+        return lines
+
+    def _once(self, block: Block) -> list[str]:
+        lines = statements(block.assignments, self.titles, self.printer)
+        for store in block.stores:
+            lines.append(f"model->{c_name(store.array)} = {self.printer.text(store.value)};")
+        return lines
+
+    def _legs(self, block: Block) -> list[str]:
+        leg = block.leg_type
+        inner = self._parameters(symbols_of(block), leg)
+        inner += statements(block.assignments, self.titles, self.printer)
+        for store in block.stores:
+            inner.append(f"model->{c_name(store.array)}[leg] = {self.printer.text(store.value)};")
+        for target, value in block.sums:
+            inner += statement(f"{c_name(str(target))} += {self.printer.text(value)}")
+        count = self.bundle.leg_counts[leg]
+        return [f"for (size_t leg = 0; leg < {count}; ++leg) {{", *indented(inner), "}"]
+
+    def _parameters(self, used: set[str], leg: str | None) -> list[str]:
+        """The entries of the parameters, and the signs of the branches, that are used."""
+        table, lines = self.bundle.derivation.parameters, []
+        for name, (parameter, index) in table.entries.items():
+            if name in used and parameter.leg_type == leg:
+                lines.append(f"const real {c_name(name)} = params->{_entry(parameter, index)};")
+        for name, (leg_type, signs) in table.branches.items():
+            if name in used and leg_type == leg:
+                values = ", ".join(map(str, signs))
+                lines.append(f"static const signed char signs_{name}[] = {{{values}}};")
+                lines.append(f"const real {c_name(name)} = signs_{name}[leg];")
+        return lines
+
+
+def _entry(parameter: ParameterField, index: int) -> str:
+    """Where an entry of a parameter stands."""
+    at = parameter.name + ("[leg]" if parameter.leg_type else "")
+    if parameter.shape == (3, 3):
+        return f"{at}[{index // 3}][{index % 3}]"
+    return f"{at}[{index}]" if parameter.shape else at
+
+
+def prepare_body(bundle: Bundle) -> list[str]:
+    """Statements that compute the prepared model from the parameters."""
+    return _Preparation(bundle).body()
+
+
+# ---- checks ---------------------------------------------------------------------------------
+
+
+def parameter_checks(bundle: Bundle) -> list[str]:
+    """Conditions that the parameters must satisfy, one per line."""
+    lines = []
+    for f in field_views(bundle):
+        first = "&p->" + f.name + "[0]" * len(f.shape)
+        core = f.shape[1:] if f.per_leg else f.shape
+        count, size = (f.shape[0] if f.per_leg else 1), int(sp.prod(core))
+        lines.append(f"ok &= all_finite({first}, {count * size});")
+        lines += [f"ok &= all_zero({first} + {k}, {count}, {size});" for k in f.zeros]
+        lines += _rule(f, first, count, planar=bundle.coordinates.planar)
+    return lines
+
+
+def _rule(f: FieldView, first: str, count: int, *, planar: bool) -> list[str]:
+    if f.rule == "mass":
+        return [f"ok &= none_negative({first}, {count});"]
+    if f.rule == "unit":
+        return [f"ok &= all_unit({first}, {count});"]
+    if f.rule == "inertia":
+        return [f"ok &= all_symmetric({first}, {count});"]
+    if f.rule == "rotation":
+        about = [f"ok &= all_about_z({first}, {count});"] if planar else []
+        return [f"ok &= all_rotations({first}, {count});", *about]
+    return []
