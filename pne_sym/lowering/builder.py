@@ -74,6 +74,10 @@ class Builder:
         self._names.add(symbol.name)
         return symbol
 
+    def given_names(self) -> list[str]:
+        """Names of the symbols that are given from outside."""
+        return [s.name for s in self._stage if s not in self.of]
+
     def is_declared(self, symbol: sp.Symbol) -> bool:
         """Whether a symbol is known."""
         return symbol in self._stage

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
@@ -11,7 +12,7 @@ from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.builder import Atom, Builder, Statement
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.inputs import leg_inputs, unpack
-from pne_sym.lowering.simplify import inline_single_use, renamed
+from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
 from pne_sym.program.ir import (
     Assignment,
     Block,
@@ -23,6 +24,7 @@ from pne_sym.program.ir import (
     Stage,
     Store,
 )
+from pne_sym.program.verify import verify
 from pne_sym.vector import Tensor, Vector
 
 # Arrays of each function; functions of one group are lowered together, so that they share
@@ -71,7 +73,11 @@ def lower(derivation: Derivation) -> Program:
             if chosen:
                 present = {store.array for _, store in chosen}
                 slices.append(_Slice(name, tuple(a for a in arrays if a in present), chosen))
-    return _program(derivation, builder, slices)
+    program = _program(derivation, builder, slices)
+    table = derivation.parameters
+    outside = {name: parameter.leg_type or "" for name, (parameter, _) in table.entries.items()}
+    verify(program, outside | {name: leg for name, (leg, _) in table.branches.items()})
+    return program
 
 
 def _closures(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
@@ -240,27 +246,46 @@ def _closure(builder: Builder, wanted: set[Any]) -> set[Any]:
     return needed
 
 
+@dataclass
+class _Sliced:
+    """A slice with its statements, and the symbols that it uses."""
+
+    part: _Slice
+    run: list[Statement]
+    guards: list[Any]
+    used: set[Any]
+    constants: set[Any]
+
+
 def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> Program:
-    functions: dict[str, Function] = {}
-    prepared: set[Any] = set()
     leg_types = [t.name for t in derivation.leg_types]
-    for part in slices:
-        statements, guards = part.statements(builder)
-        run = [s for s in statements if s.stage.depends_on_state]
-        run = inline_single_use(run, part.stores, guards)
-        run, part.stores, guards = renamed(run, part.stores, guards)
-        used = _used(run, part.stores, guards)
-        constants = {s for s in used if not builder.stage_of(s).depends_on_state}
-        prepared |= constants
-        blocks = _blocks(run, part.stores, guards, leg_types)
-        functions[part.name] = _function(derivation, builder, part, blocks, used, constants)
-    names = sorted(prepared, key=lambda s: s.name)
-    chain = _closure(builder, prepared)
-    stores = [(builder.stage_of(s), Store(s.name, s, 0)) for s in names]
+    sliced = [_sliced(builder, part) for part in slices]
+    constants = set().union(*(s.constants for s in sliced))
+    stores = [
+        (builder.stage_of(s), Store(s.name, s, 0)) for s in sorted(constants, key=lambda s: s.name)
+    ]
+    chain = _closure(builder, constants)
     statements = inline_single_use([s for s in builder.statements if s.target in chain], stores, [])
+    outside = set(builder.given_names())
+    names = numbered(statements, outside)
+    statements, stores, _ = renamed(names, statements, stores, [])
+    stores = sorted(
+        ((at, replace(s, array=s.value.name)) for at, s in stores), key=lambda item: item[1].array
+    )
     prepare = _blocks(statements, stores, [], leg_types, parameters=True)
-    listed = tuple((s.name, builder.stage_of(s).leg_type) for s in names)
+    listed = tuple((store.array, at.leg_type) for at, store in stores)
+    reserved = outside | {name for name, _ in listed}
+    functions = {s.part.name: _function(derivation, builder, s, names, reserved) for s in sliced}
     return Program(prepare, listed, functions, _shapes(derivation))
+
+
+def _sliced(builder: Builder, part: _Slice) -> _Sliced:
+    statements, guards = part.statements(builder)
+    run = [s for s in statements if s.stage.depends_on_state]
+    run = inline_single_use(run, part.stores, guards)
+    used = _used(run, part.stores, guards)
+    constants = {s for s in used if not builder.stage_of(s).depends_on_state}
+    return _Sliced(part, run, guards, used, constants)
 
 
 def _used(
@@ -275,43 +300,45 @@ def _used(
 def _function(
     derivation: Derivation,
     builder: Builder,
-    part: _Slice,
-    blocks: tuple[Block, ...],
-    used: set[Any],
-    constants: set[Any],
+    sliced: _Sliced,
+    prepared_names: dict[Any, Any],
+    reserved: set[str],
 ) -> Function:
     assert derivation.coordinates is not None
     inputs, assignments, checks = [], [], []
     for vector, (named, conditions) in unpack(derivation.coordinates).items():
-        wanted = [a for a in named if a.target in used]
-        chain = {a.target for a in named} & _closure_of(named, {a.target for a in wanted})
+        chain = _closure_of(named, {a.target for a in named if a.target in sliced.used})
         own = [a for a in named if a.target in chain]
         if own:
             inputs.append(vector)
             assignments += own
             checks += [c for c in conditions if c.value in chain]
     per_leg: dict[str, list[LegInput]] = {}
-    for symbol in sorted(used, key=lambda s: s.name):
+    for symbol in sorted(sliced.used, key=lambda s: s.name):
         stage = builder.stage_of(symbol)
         if stage.kind is Kind.STATE_LEG and symbol not in builder.of:
             vector, indices = leg_inputs(derivation, symbol.name, stage.leg_type)
             per_leg.setdefault(stage.leg_type, []).append(LegInput(symbol, vector, indices))
-            if vector not in inputs:
-                inputs.append(vector)
-    tables = {
-        t.name: tuple(sorted(s.name for s in constants if builder.stage_of(s).leg_type == t.name))
-        for t in derivation.leg_types
+            inputs.append(vector)
+    given = {s.name for s in sliced.used if s not in builder.of} | {
+        a.target.name for a in assignments
     }
+    names = prepared_names | numbered(sliced.run, reserved | given)
+    run, stores, guards = renamed(names, sliced.run, sliced.part.stores, sliced.guards)
+    constants = {names.get(s, s).name: builder.stage_of(s).leg_type for s in sliced.constants}
     return Function(
-        part.name,
+        sliced.part.name,
         tuple(v for v in "XVAq" if v in inputs),
-        part.arrays,
+        sliced.part.arrays,
         tuple(assignments),
         tuple(checks),
-        blocks,
+        _blocks(run, stores, guards, [t.name for t in derivation.leg_types]),
         {t: tuple(found) for t, found in per_leg.items()},
-        tuple(sorted(s.name for s in constants if not builder.stage_of(s).per_leg)),
-        tables,
+        tuple(sorted(n for n, leg in constants.items() if not leg)),
+        {
+            t.name: tuple(sorted(n for n, leg in constants.items() if leg == t.name))
+            for t in derivation.leg_types
+        },
     )
 
 

@@ -61,16 +61,14 @@ def inline_single_use(
     return kept
 
 
-def renamed(
-    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
-) -> tuple[list[Statement], list[tuple[Stage, Store]], list[Any]]:
-    """Number equal hints from one within a function, so that names do not depend on the others."""
-    own = {s.target for s in statements}
-    taken = {symbol.name for s in statements for symbol in s.expr.free_symbols - own}
-    for guard in guards:
-        taken |= {s.name for e in (guard.value, guard.scale) for s in e.free_symbols - own}
-    for _, store in stores:
-        taken |= {s.name for s in sp.sympify(store.value).free_symbols - own}
+def numbered(statements: list[Statement], reserved: set[str]) -> dict[Any, Any]:
+    """Symbols whose names do not depend on other functions: equal hints numbered from one.
+
+    Args:
+        statements: whose targets are to be named.
+        reserved: names that are taken.
+    """
+    taken = set(reserved)
     names: dict[Any, Any] = {}
     issued: dict[str, int] = {}
     for statement in statements:
@@ -80,12 +78,22 @@ def renamed(
         issued[statement.hint] = k
         taken.add(name)
         names[statement.target] = sp.Symbol(name, real=True)
+    return names
+
+
+def renamed(
+    names: dict[Any, Any],
+    statements: list[Statement],
+    stores: list[tuple[Stage, Store]],
+    guards: list[Any],
+) -> tuple[list[Statement], list[tuple[Stage, Store]], list[Any]]:
+    """Statements, stores and guards with other names."""
 
     def again(expr: Any) -> Any:
         return sp.sympify(expr).xreplace(names)
 
     return (
-        [replace(s, target=names[s.target], expr=again(s.expr)) for s in statements],
+        [replace(s, target=names.get(s.target, s.target), expr=again(s.expr)) for s in statements],
         [(stage, replace(store, value=again(store.value))) for stage, store in stores],
         [replace(g, value=again(g.value), scale=again(g.scale)) for g in guards],
     )

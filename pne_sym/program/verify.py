@@ -49,7 +49,7 @@ def _verify_function(name: str, f: Function, shapes: Any, prepared: Mapping[str,
     scope.require(f.name == name, f"calls itself {f.name!r}")
     for value, leg_type in given:
         scope.require(prepared.get(value) == leg_type, f"{value} is not a prepared value")
-    scope.require(set(f.inputs) <= set("XVA"), f"inputs are {f.inputs}")
+    scope.require(set(f.inputs) <= set("XVAq"), f"inputs are {f.inputs}")
     scope.entries = tuple(f"{vector}_" for vector in f.inputs)
     for a in f.unpack:
         scope.assign(a.target, a.expr, "", a.equation)
