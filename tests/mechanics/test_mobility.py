@@ -1,0 +1,129 @@
+"""Mobility at home: known values, and a count by the oracle's own loop closure."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pne_sym import manipulators
+from pne_sym.mechanics.mobility import check_mobility, mobility
+from pne_sym.model.errors import SpecWarning
+from pne_sym.model.manipulator import Manipulator
+from tests.oracle.closure import leg_closure
+from tests.oracle.coordinates import joint_slices, twist_basis
+
+# freedoms, drives, constraints, extra coordinates, passive ones, cases of section 3
+KNOWN: dict[str, tuple[int, int, int, int, int, tuple[str, ...]]] = {
+    "stewart": (6, 6, 0, 0, 0, ("3.1",)),
+    "stewart_sps": (12, 6, 0, 6, 6, ("3.6",)),
+    "stewart_7ups": (6, 7, 0, 0, 0, ("3.3",)),
+    "stewart_7ups_free": (6, 6, 0, 0, 0, ("3.3",)),
+    "hexapod_6ucu": (6, 6, 0, 0, 0, ("3.1",)),
+    "hexapod_6x6r": (6, 6, 0, 0, 0, ("3.1",)),
+    "hexapod_6rus": (6, 6, 0, 0, 0, ("3.1",)),
+    "hexapod_6uhs": (6, 6, 0, 0, 0, ("3.1",)),
+    "hexaglide": (6, 6, 0, 0, 0, ("3.1",)),
+    "hybrid_3prps": (6, 6, 0, 0, 0, ("3.2",)),
+    "hybrid_3crs": (6, 6, 0, 0, 0, ("3.2",)),
+    "hybrid_3rrrs": (6, 6, 0, 0, 0, ("3.2",)),
+    "hybrid_3rrrs_redundant": (7, 7, 0, 1, 0, ("3.5",)),
+    "tripod_3rps": (3, 3, 3, 0, 0, ("3.7",)),
+    "tripod_3prs": (3, 3, 3, 0, 0, ("3.7",)),
+    "tripod_3upu": (3, 3, 3, 0, 0, ("3.7",)),
+    "tripod_3ups": (3, 3, 0, 0, 0, ("3.1",)),
+    "spherical_3ups": (3, 3, 0, 0, 0, ("3.1",)),
+    "delta": (3, 3, 0, 0, 0, ("3.1",)),
+    "planar_3rpr": (3, 3, 0, 0, 0, ("3.1",)),
+    "planar_3rrr": (3, 3, 0, 0, 0, ("3.1",)),
+    "planar_3prr": (3, 3, 0, 0, 0, ("3.1",)),
+    "planar_4rpr": (3, 4, 0, 0, 0, ("3.3",)),
+    "planar_4rpr_free": (3, 3, 0, 0, 0, ("3.3",)),
+    "planar_mixed": (3, 3, 0, 0, 0, ("3.1",)),
+    "planar_redundant": (4, 4, 0, 1, 0, ("3.5",)),
+    "sixbar": (3, 3, 0, 0, 0, ("3.2",)),
+    "fivebar_revolute": (2, 2, 0, 0, 0, ("3.1",)),
+    "fivebar_prismatic": (2, 2, 0, 0, 0, ("3.1",)),
+    "fivebar_redundant": (2, 3, 0, 0, 0, ("3.4",)),
+    "fivebar_offset": (2, 2, 1, 0, 0, ("3.7",)),
+}
+
+
+def test_every_manipulator_of_the_catalogue_is_known() -> None:
+    assert set(manipulators.names()) <= set(KNOWN)
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_known_mobility(name: str) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", SpecWarning)
+        found = check_mobility(manipulators.load(name))
+    assert (
+        found.freedoms,
+        found.drives,
+        found.constraints,
+        found.extra,
+        found.passive,
+        found.cases,
+    ) == KNOWN[name]
+    assert found.singular_legs == ()
+    assert found.overconstrained == 0
+    assert found.undriven == found.passive
+
+
+@pytest.mark.parametrize("name", KNOWN)
+def test_freedoms_by_the_oracle(name: str) -> None:
+    """The oracle's own closure, differentiated by jets, has as many motions."""
+    manipulator = manipulators.load(name)
+    X, q = np.array(manipulator.home.X), np.array(manipulator.home.q)
+    basis = twist_basis(manipulator.space)
+    rows = []
+    for leg, where in zip(manipulator.legs, joint_slices(manipulator), strict=True):
+        found = leg_closure(manipulator, leg, X, q[where])
+        row = np.zeros((found.residual.size, basis.shape[1] + q.size))
+        row[:, : basis.shape[1]] = found.platform @ basis
+        row[:, basis.shape[1] :][:, where] = found.joints
+        rows.append(row)
+    values = np.linalg.svd(np.vstack(rows), compute_uv=False)
+    freedoms = basis.shape[1] + q.size - int(np.sum(values > 1e-6 * values[0]))
+    assert mobility(manipulator).freedoms == freedoms
+
+
+def without_drives(manipulator: Manipulator) -> Manipulator:
+    legs = tuple(
+        replace(leg, joints=tuple(replace(joint, actuated=False) for joint in leg.joints))
+        for leg in manipulator.legs
+    )
+    return replace(manipulator, legs=legs)
+
+
+def test_fewer_drives_than_freedoms_are_a_warning() -> None:
+    with pytest.warns(SpecWarning, match="fewer drives than freedoms: 0 for 3"):
+        found = check_mobility(without_drives(manipulators.load("planar_3rpr")))
+    assert (found.drives, found.undriven) == (0, 3)
+
+
+def test_dependent_drives_are_a_warning() -> None:
+    """Three legs through one point cannot resist a turn about it."""
+    manipulator = manipulators.load("planar_3rpr")
+    legs = tuple(replace(leg, platform_point=(0.0, 0.0, 0.0)) for leg in manipulator.legs)
+    same = replace(manipulator, legs=legs)
+    with pytest.warns(SpecWarning, match="all drives held, the mechanism can move at home"):
+        check_mobility(same)
+
+
+def test_a_stretched_leg_is_singular() -> None:
+    manipulator = manipulators.load("fivebar_revolute")
+    q = (manipulator.home.q[0], 0.0, *manipulator.home.q[2:])
+    stretched = replace(manipulator, home=replace(manipulator.home, q=q))
+    assert mobility(stretched).singular_legs == (0,)
+
+
+def test_one_line_for_people() -> None:
+    assert str(mobility(manipulators.load("tripod_3rps"))) == (
+        "3 degrees of freedom at home, 3 drives, 3 constraints, 0 extra coordinates; "
+        "section 3 of the paper: constrained: legs that restrict the platform (3.7)"
+    )
+    assert "6 extra coordinates (6 passive)" in str(mobility(manipulators.load("stewart_sps")))
