@@ -172,7 +172,8 @@ _RATES = (
     r"$`\dot{\mathbf S}=\sum_j\mathbf v_j\,\dot q_j`$. The reciprocal vectors $`\mathbf w_j`$, "
     r"with $`\mathbf w_j\cdot\mathbf v_k=1`$ for $`j=k`$ and 0 otherwise, solve this for the joint "
     r"rates. The centripetal tensor saves work: "
-    r"$`\mathbf W\,\mathbf r=\boldsymbol\omega\times(\boldsymbol\omega\times\mathbf r)`$."
+    r"$`\mathbf W_j\,\mathbf r=\boldsymbol\omega_j\times(\boldsymbol\omega_j\times\mathbf r)`$ for "
+    r"every vector $`\mathbf r`$."
 )
 _ACCELERATIONS = (
     r"The bias $`\mathfrak b`$ is the acceleration that the connection point would have with all "
@@ -181,7 +182,7 @@ _ACCELERATIONS = (
     r"acceleration of the platform is then written as coefficient times $`\mathbf a_p`$ plus "
     r"remainder, by Rules I and II; a circle marks the remainder, the same formula at "
     r"$`\mathbf a_p=\mathbf 0`$. The acceleration tensor saves work: "
-    r"$`\mathbf B\,\mathbf r=\boldsymbol\alpha\times\mathbf r+\mathbf W\,\mathbf r`$."
+    r"$`\mathbf B_j\,\mathbf r=\boldsymbol\alpha_j\times\mathbf r+\mathbf W_j\,\mathbf r`$."
 )
 
 

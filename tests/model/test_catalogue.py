@@ -30,16 +30,31 @@ def test_names() -> None:
 def test_equals_the_reference(name: str) -> None:
     found = manipulators.load(name)
     expected = from_mapping(reference(name), "reference")
-    assert replace(found, title="") == replace(expected, title="")
+    assert replace(found, title="", symbols=()) == replace(expected, title="")
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_reading_changes_no_digit(name: str) -> None:
     """Only structural zeros are snapped: all else stands as in the reference file."""
-    snapped = differences(to_full_form(manipulators.load(name)), reference(name))
+    found = replace(manipulators.load(name), symbols=())
+    snapped = differences(to_full_form(found), reference(name))
     snapped.pop(".title")
     assert all(found == 0.0 and abs(given) < 1e-16 for found, given in snapped.values())
     assert all(".axis_platform" in place for place in snapped)
+
+
+def test_the_worked_examples_of_the_paper_have_its_symbols() -> None:
+    """So that report and paper can be read side by side."""
+    expected = {
+        "fivebar_prismatic": {"e_2": "s", "q_2": "L", "qd_1": "W", "qdd_1": "A"},
+        "fivebar_revolute": {"q_1": r"\theta", "link_x_1": "c", "link_x_2": "d"},
+        "hybrid_3prps": {"e_1": "k", "e_3": "s", "q_1": "D", "q_3": "L", "omega_2": "W"},
+        "tripod_3rps": {"e_1": "k", "e_2": "s", "q_2": "L", "omega_1": "W"},
+    }
+    for name in NAMES:
+        symbols = dict(manipulators.load(name).symbols)
+        assert bool(symbols) == (name in expected)
+        assert expected.get(name, {}).items() <= symbols.items()
 
 
 def differences(a: Any, b: Any, place: str = "") -> dict[str, tuple[Any, Any]]:
@@ -58,7 +73,9 @@ def test_files_are_short_and_explained(name: str) -> None:
     text = manipulators.path(name).read_text(encoding="utf-8")
     assert max(map(len, text.splitlines())) <= 100
     assert text.startswith("# ")
-    assert text.endswith("]\n")
+    table, _, symbols = text.partition("\n[symbols]\n")
+    assert table.rstrip().endswith("]")
+    assert bool(symbols) == bool(manipulators.load(name).symbols)
 
 
 def test_unknown_name_has_the_nearest() -> None:
