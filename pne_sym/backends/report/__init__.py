@@ -46,7 +46,7 @@ class ReportBackend:
             parameters=legs.parameter_table(derivation, None),
             legs=legs.leg_views(bundle, printer),
             chapters=chapters,
-            functions=tuple(functions.function_statements(bundle)),
+            functions=tuple(functions.function_statements(bundle, printer)),
             troubles=functions.troubles(bundle),
             counts=functions.counts(bundle),
             parts=functions.parts(bundle),

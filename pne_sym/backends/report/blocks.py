@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Any
-
-import sympy as sp
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.latex import LatexPrinter
@@ -15,7 +13,14 @@ from pne_sym.backends.report.view import Statement
 from pne_sym.derivation import Chapter, Derivation, Output
 from pne_sym.vector import Tensor, Vector
 
-Key = tuple[int, ...]
+
+class Key(NamedTuple):
+    """A block of rows or columns; what every leg has its own of stands last."""
+
+    per_leg: bool
+    places: tuple[int, ...]
+
+
 ARRAYS = (
     ("M", r"\mathbf M(X)", "The mass matrix, symmetric"),
     ("Z", r"\mathbf Z(X,V)", "Centrifugal, Coriolis, gyroscopic terms and weight"),
@@ -34,6 +39,16 @@ ARRAYS = (
             "What the constraints do to the platform, one column for every entry "
             r"of $`\boldsymbol\lambda`$"
         ),
+    ),
+    (
+        "constraints",
+        r"\boldsymbol\varphi(X)",
+        "By how much the legs miss the platform, zero where it can be (Eq. 37)",
+    ),
+    (
+        "constraint_bias",
+        r"\boldsymbol\gamma(X,V)",
+        "What the second derivative of the constraints holds besides the acceleration",
     ),
 )
 
@@ -54,9 +69,14 @@ def block_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statemen
     for array, latex, words in ARRAYS:
         outputs = [o for o in derivation.outputs if o.array == array]
         if outputs:
-            grid = _Grid(outputs, printer.with_index())
             note = _index_note(derivation, outputs)
-            yield Statement(f"**{array}.** {words}.{note}", grid.lines(latex))
+            formula = block_matrix(outputs, latex, printer)
+            yield Statement(f"**`{array}`.** {words}.{note}", formula)
+
+
+def block_matrix(outputs: Sequence[Output], latex: str, printer: LatexPrinter) -> tuple[str, ...]:
+    """An array as a block matrix, one cell per line."""
+    return _Grid(outputs, printer.with_index()).lines(latex)
 
 
 def _index_note(derivation: Derivation, outputs: list[Output]) -> str:
@@ -73,45 +93,33 @@ def _index_note(derivation: Derivation, outputs: list[Output]) -> str:
 class _Grid:
     """Cells by row and column block."""
 
-    def __init__(self, outputs: list[Output], printer: LatexPrinter) -> None:
+    def __init__(self, outputs: Sequence[Output], printer: LatexPrinter) -> None:
         self.printer = printer
         self.cells: dict[tuple[Key, Key], str] = {}
-        self.per_leg: set[Key] = set()
         for output in outputs:
             self._place(output)
 
     def _place(self, output: Output) -> None:
-        row, column = self._keys(output)
-        text = self._cell(output.value, row_of_vector=bool(output.leg_rows and output.columns))
-        self.cells[row, column] = text
+        row, column = _key(output.leg_rows, output.rows), _key(output.leg_columns, output.columns)
+        along_row = bool(output.leg_rows and output.columns)
+        self.cells[row, column] = self._cell(output.value, transposed=along_row)
         if output.mirrored:
-            self.cells[column, row] = self._cell(
-                output.value, row_of_vector=False, transposed=isinstance(output.value, Tensor)
-            )
+            turned = isinstance(output.value, Tensor)
+            self.cells[column, row] = self._cell(output.value, transposed=turned)
 
-    def _keys(self, output: Output) -> tuple[Key, Key]:
-        row: Key = output.leg_rows or tuple(place for _, place in output.rows)
-        column: Key = output.leg_columns or tuple(place for _, place in output.columns)
-        if output.leg_rows:
-            self.per_leg.add(row)
-        if output.leg_columns:
-            self.per_leg.add(column)
-        return row, column
-
-    def _cell(self, value: Any, *, row_of_vector: bool, transposed: bool = False) -> str:
-        if transposed or (row_of_vector and isinstance(value, Vector)):
+    def _cell(self, value: Any, *, transposed: bool) -> str:
+        if transposed and isinstance(value, Vector | Tensor):
             return self.printer.transposed(value)
-        value = value if isinstance(value, Vector | Tensor) else sp.sympify(value)
         return self.printer.doprint(value)
 
     def lines(self, latex: str) -> tuple[str, ...]:
         """The matrix, one cell per line."""
-        rows = sorted({row for row, _ in self.cells}, key=self._order)
-        columns = sorted({column for _, column in self.cells}, key=self._order)
-        dots = all(column in self.per_leg for column in columns) and columns != [()]
+        rows = sorted({row for row, _ in self.cells})
+        columns = sorted({column for _, column in self.cells})
+        dots = all(column.per_leg for column in columns)
         lines = [f"{latex} =", r"\begin{bmatrix}"]
         for k, row in enumerate(rows):
-            cells = [self.cells.get((row, column), self._zero(row, column)) for column in columns]
+            cells = [self.cells.get((row, column), _zero(row, column)) for column in columns]
             if dots:
                 cells = [r"\cdots", *(part for cell in cells for part in (cell, r"\cdots"))]
             lines += [cells[0], *(f"& {cell}" for cell in cells[1:])]
@@ -119,8 +127,12 @@ class _Grid:
                 lines[-1] += r" \\"
         return (*lines, r"\end{bmatrix}")
 
-    def _zero(self, row: Key, column: Key) -> str:
-        return "0" if row in self.per_leg and column in self.per_leg else r"\mathbf 0"
 
-    def _order(self, key: Key) -> tuple[int, int]:
-        return (key in self.per_leg, min(key, default=0))
+def _key(per_leg: tuple[int, ...], places: tuple[tuple[int, int], ...]) -> Key:
+    if per_leg:
+        return Key(per_leg=True, places=per_leg)
+    return Key(per_leg=False, places=tuple(place for _, place in places))
+
+
+def _zero(row: Key, column: Key) -> str:
+    return "0" if row.per_leg and column.per_leg else r"\mathbf 0"

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.latex import LatexPrinter
+from pne_sym.backends.report.blocks import block_matrix
 from pne_sym.backends.report.equations import last_duals
 from pne_sym.backends.report.markdown import table
 from pne_sym.backends.report.names import leg_title
@@ -19,8 +21,10 @@ _R = r"\mathbf R(X, V, A)"
 _W = r"\mathbf W_{\mathrm{ext}}"
 
 
-def function_statements(bundle: Bundle) -> Iterator[Statement]:
+def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statement]:
     """Inverse and forward dynamics, constraints, extra coordinates."""
+    outputs = [o for o in bundle.derivation.outputs if o.array == "required"]
+    required = block_matrix(outputs, _R, printer)
     sizes = bundle.coordinates.sizes
     constrained = sizes["NC"] > 0
     unknown = (
@@ -32,10 +36,13 @@ def function_statements(bundle: Bundle) -> Iterator[Statement]:
     yield Statement(
         "**Inverse dynamics** goes the direct way of Eq. 3: accelerations are numbers, leg forces "
         r"come out as numbers, and the platform's equilibrium gives what is required, "
-        r"$`\mathbf R`$ (its entries are those of chapter E); M is never formed."
-        + _least_norm(sizes),
-        (f"{unknown} = {_R} - {_W}",),
+        r"$`\mathbf R`$; M is never formed.",
+        (f"{unknown} = {_R} - {_W},", r"\qquad", *required),
     )
+    if sizes["NU"] + sizes["NC"] > sizes["NV"]:
+        yield Statement(
+            "There are more unknowns than equations; of all solutions the smallest is taken.", ()
+        )
     if constrained:
         yield Statement(
             "**Forward dynamics** solves the equations of motion together with the constraints, "
@@ -65,12 +72,6 @@ def function_statements(bundle: Bundle) -> Iterator[Statement]:
             "`complete_acceleration` fills in their accelerations before inverse dynamics:",
             (r"\mathbf M_{yy}\,\ddot{\mathbf y} = -\mathbf M_{yx}\,\mathbf A_x - \mathbf Z_y",),
         )
-
-
-def _least_norm(sizes: dict[str, int]) -> str:
-    if sizes["NU"] + sizes["NC"] > sizes["NV"]:
-        return " There are more unknowns than equations: of all solutions the smallest is taken."
-    return ""
 
 
 def troubles(bundle: Bundle) -> tuple[str, ...]:

@@ -36,7 +36,7 @@ def leg_force_statements(
         "and a rest that inverse dynamics evaluates as a number, accelerations included:",
         display(_FORCE, [(*drives, *printer.terms(force))]),
     )
-    form = _closed_form(derivation, collected, leg_type, force)
+    form = closed_form(derivation, collected, leg_type, force)
     if form is not None:
         yield Statement(
             "**The leg's force on the platform, Eq. 4.** In closed form, the acceleration "
@@ -62,7 +62,7 @@ def _moment(
     for output in _outputs(derivation, leg_type, "leg_force", 3):
         drives = tuple(_applied(derivation, leg_type, printer, 3))
         rows = [(*drives, *printer.terms(output.value))]
-        form = _closed_form(derivation, collected, leg_type, output.value)
+        form = closed_form(derivation, collected, leg_type, output.value)
         if form is not None:
             rows.append((*drives, *collected_terms(form, printer)))
         yield Statement(
@@ -104,7 +104,7 @@ def _definition(derivation: Derivation, symbol: Any) -> Equation | None:
     return next((e for e in derivation.equations() if e.lhs == symbol), None)
 
 
-def _closed_form(
+def closed_form(
     derivation: Derivation, collected: Collected, leg_type: str, force: Any
 ) -> LinearForm | None:
     """Linear form of the leg's force in Q and U."""

@@ -30,14 +30,11 @@ def summary(bundle: Bundle) -> str:
         count = len(info.indices)
         parts.append(f"{count} {leg_title(info)} leg{'s' if count > 1 else ''}")
     carried = " and ".join([", ".join(parts[:-1]), parts[-1]] if len(parts) > 1 else parts)
+    stars = ", a star marks a joint whose displacement is an extra coordinate"
     return (
         f"The mechanism is {SPACES[manipulator.space.value]}, carried by {carried} in parallel. "
-        f"{_letters(bundle)}, from the base to the platform. Driven joints are underlined"
-        + (
-            "; a star marks a joint whose displacement is an extra coordinate."
-            if bundle.coordinates.extras
-            else "."
-        )
+        f"Legs are named from the base to the platform ({_letters(bundle)}); driven joints are "
+        f"underlined{stars if bundle.coordinates.extras else ''}."
     )
 
 

@@ -140,17 +140,17 @@ SPACES = {
 }
 
 CASES: dict[str, str] = {
-    "3.1": "ordinary (Sec. 3.1): every leg that is driven has one actuator, and there are as many "
+    "3.1": "Ordinary (Sec. 3.1): every leg that is driven has one actuator, and there are as many "
     "as freedoms; H is square",
-    "3.2": "hybrid (Sec. 3.2): a leg has several actuators; it has as many columns in H",
-    "3.3": "static redundancy (Sec. 3.3): more legs than freedoms; H has a column for every driven "
+    "3.2": "Hybrid (Sec. 3.2): a leg has several actuators; it has as many columns in H",
+    "3.3": "Static redundancy (Sec. 3.3): more legs than freedoms; H has a column for every driven "
     "one, a free leg stays in M and Z",
-    "3.4": "redundant actuation (Sec. 3.4): passive joints are driven besides; H has more columns "
+    "3.4": "Redundant actuation (Sec. 3.4): passive joints are driven besides; H has more columns "
     "than rows",
-    "3.5": "kinematic redundancy (Sec. 3.5): driven joints whose displacements the platform does "
+    "3.5": "Kinematic redundancy (Sec. 3.5): driven joints whose displacements the platform does "
     "not determine; they are extra coordinates (Eq. 6)",
-    "3.6": "passive freedoms (Sec. 3.6): undriven joints whose displacements the platform does not "
+    "3.6": "Passive freedoms (Sec. 3.6): undriven joints whose displacements the platform does not "
     "determine; they are extra coordinates (Eq. 7)",
-    "3.7": "constrained (Sec. 3.7): legs leave out directions in which the platform cannot move; "
+    "3.7": "Constrained (Sec. 3.7): legs leave out directions in which the platform cannot move; "
     "the reactions along them are the multipliers (Eqs. 35 to 37)",
 }
