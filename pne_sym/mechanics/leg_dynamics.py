@@ -92,7 +92,11 @@ class LegDynamics:
 def introduce_bodies(book: Book, g: LegGeometry, planar: bool) -> list[LinkBody]:
     """Parameters of the links, and their lumped inertia about their reference points."""
     bodies = []
-    last_moving = g.count
+    free = sum(not joint.extra for joint in g.leg_type.model.joints)
+    # Only a leg that lets the connection point move freely carries its acceleration over to the
+    # last link; else that link moves as its own joints let it.
+    unconstrained = free == (2 if planar else 3) + len(g.pairs)
+    last_moving = g.count if unconstrained else 0
     for j, joint in enumerate(g.leg_type.model.joints, 1):
         if joint.link.is_massless:
             continue
