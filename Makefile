@@ -84,6 +84,15 @@ check-math: ## Render every formula of the documents with KaTeX
 wheel-test: $(VENV)/dev.stamp ## Build sdist and wheel, use the wheel from an empty environment
 	$(BIN)/python tests/tools/wheel.py
 
+.PHONY: fuzz
+fuzz: $(VENV)/test.stamp ## Give pne-gen 100,000 broken specifications (FUZZ_CASES, FUZZ_SEED)
+	$(BIN)/python tests/fuzz/fuzz.py --cases $(or $(FUZZ_CASES),100000) --seed $(or $(FUZZ_SEED),0)
+
+.PHONY: schema
+schema: $(VENV)/core.stamp ## Write docs/pne_sym.schema.json
+	$(BIN)/python -c "from pne_sym.model.schema import schema_text; print(schema_text(), end='')" \
+	  > docs/pne_sym.schema.json
+
 .PHONY: format
 format: $(VENV)/dev.stamp ## Format the code and sort its imports
 	$(BIN)/ruff format .

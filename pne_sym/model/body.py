@@ -13,7 +13,7 @@ from pne_sym.model.manipulator import ZERO3, ZERO33, Body, Matrix3, Vector3
 from pne_sym.model.values import matrix, not_negative, number, numbers, vector
 
 FIELDS = ("mass", "centre_of_mass", "inertia", "inertia_about")
-_COMPONENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+COMPONENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 _FORMS = (
     "a 3x3 tensor, three principal values [ixx, iyy, izz], "
     "or a table of ixx, iyy, izz, ixy, ixz, iyz (kg m^2)"
@@ -54,9 +54,9 @@ def read_body(entry: Entry, *, plane: bool) -> Body:
 def _tensor(entry: Entry, *, plane: bool) -> Matrix3:
     value = entry.value
     if isinstance(value, dict):
-        table = entry.table(_COMPONENTS)
+        table = entry.table(COMPONENTS)
         found = {name: number(field) for name, field in table.fields.items()}
-        ixx, iyy, izz, ixy, ixz, iyz = (found.get(name, 0.0) for name in _COMPONENTS)
+        ixx, iyy, izz, ixy, ixz, iyz = (found.get(name, 0.0) for name in COMPONENTS)
         return ((ixx, ixy, ixz), (ixy, iyy, iyz), (ixz, iyz, izz))
     if plane and isinstance(value, int | float):
         return (ZERO3, ZERO3, (0.0, 0.0, number(entry)))

@@ -21,7 +21,7 @@ FIELDS = ("kind", "axis", "axes", "offset", "pitch", "actuated", "extra", "link"
 PLATFORM_FIELDS = ("kind", "offset", "axis_link", "axis_platform", "rotation")
 MAX_JOINTS = 12
 
-_SEQUENCES: dict[str, tuple[JointKind, ...]] = {
+KINDS: dict[str, tuple[JointKind, ...]] = {
     "R": (JointKind.REVOLUTE,),
     "P": (JointKind.PRISMATIC,),
     "H": (JointKind.HELICAL,),
@@ -29,6 +29,7 @@ _SEQUENCES: dict[str, tuple[JointKind, ...]] = {
     "C": (JointKind.REVOLUTE, JointKind.PRISMATIC),
     "S": (JointKind.REVOLUTE, JointKind.REVOLUTE, JointKind.REVOLUTE),
 }
+"""Kinds of joints, and the freedoms that each stands for."""
 _OUT_OF_PLANE: Vector3 = (0.0, 0.0, 1.0)
 
 
@@ -46,8 +47,8 @@ def read_joint(entry: Entry, *, plane: bool) -> tuple[Joint, ...]:
         SpecError: a value or a combination without meaning.
     """
     table = entry.table(FIELDS)
-    kind = table.require("kind", "R, P, H, U, C or S").choice(tuple(_SEQUENCES))
-    kinds = _SEQUENCES[kind]
+    kind = table.require("kind", "R, P, H, U, C or S").choice(tuple(KINDS))
+    kinds = KINDS[kind]
     if plane and kind not in ("R", "P"):
         raise table.fields["kind"].fault("R or P: other joints leave the plane")
     axes = _axes(table, kind, plane=plane)
@@ -128,7 +129,7 @@ def _axes(table: Table, kind: str, *, plane: bool) -> tuple[Vector3, ...]:
     along = axis(table.require("axis", 'a unit vector such as "x" or [1, 0, 0]'), plane=plane)
     if plane and along[2] != 0.0:
         raise table.fields["axis"].fault("a direction in the plane z = 0")
-    return (along,) * len(_SEQUENCES[kind])
+    return (along,) * len(KINDS[kind])
 
 
 def _perpendicular(table: Table, count: int) -> tuple[Vector3, ...]:

@@ -9,7 +9,10 @@ import sys
 from pne_sym.model.entry import Entry
 
 LONGEST = 40
-_GRAMMAR = re.compile(r"[a-z][a-z0-9_]*")
+GRAMMAR = r"[a-z][a-z0-9]*(?:_[a-z0-9]+)*"
+"""Single underscores only: C++ keeps names with two for itself."""
+_GRAMMAR = re.compile(GRAMMAR)
+_EXPECTED = "a lower-case letter, then lower-case letters, digits, single underscores between them"
 _COMMANDS = "list check diff explain new draw all"
 _C_AND_CPP = """
     alignas alignof and_eq asm atomic_cancel auto bitand bitor bool case catch char char8_t
@@ -25,11 +28,17 @@ _C_HEADERS = """
     assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
     stdarg stdbool stddef stdint stdio stdlib string tgmath time wchar wctype
 """
+_POSIX_HEADERS = """
+    aio alloca cpio dirent dlfcn endian fcntl features fmtmsg fnmatch ftw glob grp iconv langinfo
+    libgen malloc memory monetary mqueue ndbm netdb nl_types poll pthread pwd regex sched search
+    semaphore spawn strings stropts syslog tar termios trace ulimit unistd utime utmpx wordexp
+"""
 _RESERVED: tuple[tuple[str, frozenset[str]], ...] = (
     ("a command of pne-gen", frozenset(_COMMANDS.split())),
     ("a Python keyword", frozenset((*keyword.kwlist, *keyword.softkwlist))),
     ("a keyword of C or C++", frozenset(_C_AND_CPP.split())),
     ("a standard header of C", frozenset(_C_HEADERS.split())),
+    ("a header of POSIX", frozenset(_POSIX_HEADERS.split())),
     ("a Python module", sys.stdlib_module_names | {"numpy"}),
 )
 _DEVICES = re.compile(r"con|prn|aux|nul|com[0-9]|lpt[0-9]")
@@ -45,8 +54,7 @@ def read_name(entry: Entry) -> str:
     name = entry.text()
     if len(name) > LONGEST or not _GRAMMAR.fullmatch(name):
         raise entry.fault(
-            f"a lower-case letter, then lower-case letters, digits, underscores; "
-            f"at most {LONGEST} characters"
+            f"{_EXPECTED}; at most {LONGEST} characters"
         )
     reason = _reserved_as(name)
     if reason:
@@ -62,10 +70,15 @@ def read_type_name(entry: Entry, name: str) -> str:
     """
     if len(name) > LONGEST or not _GRAMMAR.fullmatch(name):
         raise entry.fault(
-            "a lower-case letter, then lower-case letters, digits, underscores",
+            _EXPECTED,
             problem=f"leg type named {name[:LONGEST]!r}",
         )
     return name
+
+
+def reserved() -> list[str]:
+    """Reserved words that do not depend on the version of Python, in alphabetical order."""
+    return sorted({*_COMMANDS.split(), *_C_AND_CPP.split(), *_C_HEADERS.split(), *_POSIX_HEADERS.split()})
 
 
 def _reserved_as(name: str) -> str:

@@ -22,7 +22,7 @@ EXACT = 1e-14
 LARGEST = 1e12
 """Numbers beyond it are taken as mistakes; keeps later arithmetic finite."""
 
-_DIRECTIONS: dict[str, Vector3] = {
+DIRECTIONS: dict[str, Vector3] = {
     sign + letter: (unit * (k == 0), unit * (k == 1), unit * (k == 2))
     for sign, unit in (("", 1.0), ("+", 1.0), ("-", -1.0))
     for k, letter in enumerate("xyz")
@@ -99,9 +99,9 @@ def axis(entry: Entry, *, plane: bool = False) -> Vector3:
         SpecError: not of unit length, or an unknown name.
     """
     if isinstance(entry.value, str):
-        if entry.value not in _DIRECTIONS:
+        if entry.value not in DIRECTIONS:
             raise entry.fault('a unit vector or one of "x", "y", "z", "-x", "-y", "-z"')
-        return _DIRECTIONS[entry.value]
+        return DIRECTIONS[entry.value]
     x = vector(entry, plane=plane)
     length = math.hypot(*x)
     if abs(length - 1.0) > ROUNDING:

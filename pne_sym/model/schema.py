@@ -1,0 +1,259 @@
+"""The specification format as a JSON Schema, for editors that complete and check.
+
+The names of fields, kinds, spaces and the bounds are those of the reader: a field that the reader
+does not know cannot stand here, and one that it knows cannot be missing.  What a schema cannot
+say (closed loops, unit axes, physical inertias) only the reader checks.
+"""
+
+from __future__ import annotations
+
+import json
+
+from pne_sym.model import body, home, joints, legs, names, reader, symbols, values
+from pne_sym.model.manipulator import JointKind, PlatformJointKind, Space
+from pne_sym.model.schema_text import MEANING
+
+Schema = dict[str, object]
+
+ADDRESS = "https://json-schema.org/draft/2020-12/schema"
+_NUMBER: Schema = {"type": "number", "minimum": -values.LARGEST, "maximum": values.LARGEST}
+_POSITIVE: Schema = {"type": "number", "minimum": 0, "maximum": values.LARGEST}
+_FLAG: Schema = {"type": "boolean"}
+_NAME_PATTERN = f"^(?=.{{1,{names.LONGEST}}}$){names.GRAMMAR}$"
+
+
+def json_schema() -> Schema:
+    """The schema, as plain data.
+
+    >>> sorted(json_schema()["required"])
+    ['home', 'legs', 'name', 'platform', 'space']
+    """
+    return {
+        "$schema": ADDRESS,
+        "title": "Specification of a parallel manipulator for pne_sym",
+        "description": "TOML or JSON; SI units and radians. docs/spec-format.md explains it.",
+        **_specification(),
+        "$defs": {
+            "number": _NUMBER,
+            "vector": _list_of(_ref("number"), 2, 3),
+            "rows": {"anyOf": [_rows(3), _rows(2)]},
+            "axis": _axis(),
+            "rotation": _rotation(),
+            "body": _body(),
+            "joint": _joint(),
+            "jointOverride": _override(joints.FIELDS, _joint_fields()),
+            "platformJoint": _platform_joint(),
+            "platformJointOverride": _override(joints.PLATFORM_FIELDS, _platform_joint_fields()),
+            "legType": _leg_type(),
+            "leg": _leg(),
+            "home": _home(),
+        },
+    }
+
+
+def schema_text() -> str:
+    """The schema as the text of its file, docs/pne_sym.schema.json."""
+    return json.dumps(json_schema(), indent=2, ensure_ascii=False) + "\n"
+
+
+def _specification() -> Schema:
+    spaces = [str(space) for space in Space]
+    fields: dict[str, Schema] = {
+        "name": {"type": "string", "pattern": _NAME_PATTERN, "not": {"enum": names.reserved()}},
+        "title": {"type": "string", "minLength": 1, "maxLength": reader.LONGEST_TITLE},
+        "space": {"enum": spaces},
+        "gravity": _ref("vector"),
+        "fixed_centre": _list_of(_ref("number"), 3),
+        "platform": _ref("body"),
+        "leg_types": {
+            "type": "object",
+            "propertyNames": {"pattern": _NAME_PATTERN},
+            "additionalProperties": _ref("legType"),
+        },
+        "legs": {"type": "array", "items": _ref("leg"), "minItems": 1, "maxItems": legs.MAX_LEGS},
+        "home": _ref("home"),
+        "symbols": {
+            "type": "object",
+            "maxProperties": symbols.MOST,
+            "additionalProperties": {"type": "string"},
+        },
+    }
+    table = _table(
+        "specification", reader.FIELDS, fields, ("name", "space", "platform", "legs", "home")
+    )
+    spherical: Schema = {
+        "properties": {"space": {"const": str(Space.SPHERICAL)}},
+        "required": ["space"],
+    }
+    centre: Schema = {"required": ["fixed_centre"]}
+    return {**table, "if": spherical, "then": centre, "else": {"not": centre}}
+
+
+def _body() -> Schema:
+    triple = _list_of(_ref("number"), 3)
+    components = {name: _ref("number") for name in body.COMPONENTS}
+    fields: dict[str, Schema] = {
+        "mass": _POSITIVE,
+        "centre_of_mass": _ref("vector"),
+        "inertia": {
+            "anyOf": [
+                triple,
+                _rows(3),
+                _rows(2),
+                _POSITIVE,
+                {"type": "object", "properties": components, "additionalProperties": False},
+            ]
+        },
+        "inertia_about": {"enum": ["centre_of_mass", "origin"]},
+    }
+    table = _table("body", body.FIELDS, fields, ("mass",))
+    return {**table, "dependentRequired": {"inertia_about": ["inertia"]}}
+
+
+def _joint_fields() -> dict[str, Schema]:
+    flags: Schema = {"anyOf": [_FLAG, _list_of(_FLAG, 1, 3)]}
+    return {
+        "kind": {"enum": list(joints.KINDS)},
+        "axis": _ref("axis"),
+        "axes": _list_of(_ref("axis"), 2, 3),
+        "offset": _ref("vector"),
+        "pitch": _ref("number"),
+        "actuated": flags,
+        "extra": flags,
+        "link": _ref("body"),
+    }
+
+
+def _joint() -> Schema:
+    """What goes with which kind; in the plane an R joint needs no axis."""
+    compound = [kind for kind, parts in joints.KINDS.items() if len(parts) > 1 and kind != "C"]
+    rules: list[Schema] = [
+        _when(compound, {"required": ["axes"], "not": {"required": ["axis"]}}),
+        _when([str(JointKind.HELICAL)], {"required": ["axis", "pitch"]}),
+        _when(["P", "C"], {"required": ["axis"]}),
+        _when(["R", "P", "H", "C"], {"not": {"required": ["axes"]}}),
+        _when(["U"], {"properties": {"axes": _list_of(_ref("axis"), 2)}}),
+        _when(["S"], {"properties": {"axes": _list_of(_ref("axis"), 3)}}),
+    ]
+    return {**_table("joint", joints.FIELDS, _joint_fields(), ("kind",)), "allOf": rules}
+
+
+def _platform_joint_fields() -> dict[str, Schema]:
+    return {
+        "kind": {"enum": [str(kind) for kind in PlatformJointKind]},
+        "offset": _ref("vector"),
+        "axis_link": _ref("axis"),
+        "axis_platform": _ref("axis"),
+        "rotation": _ref("rotation"),
+    }
+
+
+def _platform_joint() -> Schema:
+    """A kind alone, or a table; fields of it may stand with each leg, so none is required."""
+    fields = _platform_joint_fields()
+    table = _table("platform_joint", joints.PLATFORM_FIELDS, fields, ())
+    return {"anyOf": [fields["kind"], table]}
+
+
+def _leg_type() -> Schema:
+    fields: dict[str, Schema] = {
+        "joints": _joints(_ref("joint")),
+        "platform_joint": _ref("platformJoint"),
+    }
+    return _table("leg_type", legs.TYPE_FIELDS, fields, ())
+
+
+def _leg() -> Schema:
+    override: Schema = {
+        "type": "object",
+        "patternProperties": {"^(0|[1-9][0-9]?)$": _ref("jointOverride")},
+        "additionalProperties": False,
+    }
+    fields: dict[str, Schema] = {
+        "type": {"type": "string", "pattern": _NAME_PATTERN},
+        "base_point": _ref("vector"),
+        "base_frame": _ref("rotation"),
+        "joints": {"anyOf": [_joints(_ref("joint")), override]},
+        "platform_joint": _ref("platformJoint"),
+        "platform_point": _ref("vector"),
+    }
+    table = _table("leg", legs.FIELDS, fields, ("base_point",))
+    return {**table, "anyOf": [{"required": ["type"]}, {"required": ["joints"]}]}
+
+
+def _home() -> Schema:
+    flat: Schema = {"type": "array", "items": _ref("number")}
+    fields: dict[str, Schema] = {
+        "X": flat,
+        "q": {"anyOf": [flat, {"type": "array", "items": flat}]},
+    }
+    return _table("home", home.FIELDS, fields, home.FIELDS)
+
+
+def _axis() -> Schema:
+    """A direction by name or by components."""
+    return {"anyOf": [{"enum": list(values.DIRECTIONS)}, _ref("vector")]}
+
+
+def _rotation() -> Schema:
+    angles = _list_of(_ref("number"), 3)
+    tables = [
+        {
+            "type": "object",
+            "properties": {name: {**angles, "description": MEANING["rotation"][name]}},
+            "required": [name],
+            "additionalProperties": False,
+        }
+        for name in ("rpy", "rpy_deg")
+    ]
+    return {"anyOf": [_ref("rows"), *tables]}
+
+
+def _table(
+    table: str, known: tuple[str, ...], fields: dict[str, Schema], required: tuple[str, ...]
+) -> Schema:
+    """A table of exactly the fields that the reader knows, each with its meaning.
+
+    Raises:
+        KeyError: a field of the reader is missing here, or has no meaning in words.
+    """
+    described = {name: {**fields[name], "description": MEANING[table][name]} for name in known}
+    return {
+        "type": "object",
+        "properties": described,
+        "required": list(required),
+        "additionalProperties": False,
+    }
+
+
+def _override(known: tuple[str, ...], fields: dict[str, Schema]) -> Schema:
+    """Any of the fields of a table, none of them required."""
+    loose = {**fields, "link": {"type": "object"}} if "link" in known else fields
+    return {
+        "type": "object",
+        "properties": {name: loose[name] for name in known},
+        "additionalProperties": False,
+    }
+
+
+def _joints(item: Schema) -> Schema:
+    return {"type": "array", "items": item, "minItems": 1, "maxItems": joints.MAX_JOINTS}
+
+
+def _when(kinds: list[str], then: Schema) -> Schema:
+    return {
+        "if": {"properties": {"kind": {"enum": kinds}}, "required": ["kind"]},
+        "then": then,
+    }
+
+
+def _rows(size: int) -> Schema:
+    return _list_of(_list_of(_ref("number"), size), size)
+
+
+def _list_of(item: Schema, least: int, most: int | None = None) -> Schema:
+    return {"type": "array", "items": item, "minItems": least, "maxItems": most or least}
+
+
+def _ref(name: str) -> Schema:
+    return {"$ref": f"#/$defs/{name}"}

@@ -1,0 +1,68 @@
+"""What every field of a specification means, as editors show it beside the field."""
+
+from __future__ import annotations
+
+MEANING: dict[str, dict[str, str]] = {
+    "specification": {
+        "name": "Of files, modules and prefixes: a lower-case letter, then lower-case letters, "
+        "digits, single underscores; no reserved word.",
+        "title": "One line for people. Default: the name.",
+        "space": "Task space: point (x, y), planar (x, y, phi), spatial (x, y, z, quaternion with "
+        "the scalar last), translational (x, y, z), spherical (quaternion).",
+        "gravity": "Acceleration in the base frame, m/s^2. Default: 9.81 downwards, along -z, in "
+        "the plane along -y.",
+        "fixed_centre": "Space spherical only: the point about which the platform turns, base "
+        "frame, m.",
+        "platform": "Mass, centre of mass and inertia of the platform, platform frame.",
+        "leg_types": "Joints and platform joints that legs share, by name.",
+        "legs": "The legs; their order is that of q, of the drives and of constraint forces.",
+        "home": "A pose at which the loops close; it selects the assembly branch.",
+        "symbols": "How the report writes quantities: name in the generated code = symbol.",
+    },
+    "body": {
+        "mass": "kg; zero is allowed.",
+        "centre_of_mass": "In the body's frame, m. Default: its origin.",
+        "inertia": "kg m^2, body axes: a tensor by rows, [ixx, iyy, izz], a table of components, "
+        "or in the plane the number izz. ixy = -integral of x y dm.",
+        "inertia_about": "The point that the inertia is about. Default: centre_of_mass.",
+    },
+    "joint": {
+        "kind": "R revolute, P prismatic, H helical, U universal, C cylindrical, S spherical.",
+        "axis": "Unit vector in the preceding link's frame, or a direction such as x or -z.",
+        "axes": "Of U (two) and S (three): unit vectors, each perpendicular to the next.",
+        "offset": "From the preceding joint (the first: from base_point), preceding link's frame, "
+        "m.",
+        "pitch": "Of H: advance per angle, m/rad.",
+        "actuated": "Driven; of joints with several freedoms a list, one entry for each.",
+        "extra": "The displacement is a coordinate of its own, appended to X.",
+        "link": "Inertia of the link that the joint moves, link frame. Default: massless.",
+    },
+    "platform_joint": {
+        "kind": "S spherical, R revolute, U universal, rigid; in the plane R or S.",
+        "offset": "Its place in the last link's frame, m.",
+        "axis_link": "R, U in space: axis fixed in the last link, last link's frame.",
+        "axis_platform": "R, U in space: axis fixed in the platform, platform frame.",
+        "rotation": "rigid: platform axes in the last link's frame.",
+    },
+    "leg_type": {
+        "joints": "From the base to the platform.",
+        "platform_joint": "The joint that closes the leg: its kind alone, or a table.",
+    },
+    "leg": {
+        "type": "Name of a leg type.",
+        "base_point": "Where the leg starts, base frame, m.",
+        "base_frame": "Rotation from leg to base axes: its columns are the leg's axes; or rpy.",
+        "joints": "From the base to the platform; or, with a type, fields that differ: "
+        "joints.0.link.mass = 1.5",
+        "platform_joint": "The joint that closes the leg, or fields that differ from the type's.",
+        "platform_point": "Where the platform joint sits, platform frame, m.",
+    },
+    "home": {
+        "X": "Platform coordinates, then those of the joints marked extra.",
+        "q": "Displacements of all joints: a flat list, or one list for each leg.",
+    },
+    "rotation": {
+        "rpy": "Roll, pitch, yaw about the fixed axes x, y, z, rad.",
+        "rpy_deg": "Roll, pitch, yaw about the fixed axes x, y, z, degrees.",
+    },
+}
