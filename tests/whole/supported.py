@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from pne_sym import manipulators
 
-UNSUPPORTED: dict[str, str] = {
-    "hexapod_6ucu": "transmits a moment",
-    "hexapod_6x6r": "transmits a moment",
-    "tripod_3upu": "transmits a moment",
-}
+UNSUPPORTED: dict[str, str] = {}
 """Name -> part of the message with which it is refused."""
 
 SUPPORTED = tuple(name for name in manipulators.names() if name not in UNSUPPORTED)
 
 SAMPLE = (
     "fivebar_offset",
+    "hexapod_6ucu",
     "hybrid_3prps",
     "hybrid_3rrrs",
     "planar_mixed",

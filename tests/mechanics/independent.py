@@ -1,0 +1,669 @@
+"""Independent values of named quantities: name pattern -> function of the oracle's results.
+
+None of these functions looks at the derivation.  They use poses, velocities and accelerations of
+the bodies (differentiated poses), Newton's and Euler's laws link by link, and the oracle's joint
+forces and inertia matrices (d'Alembert).
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from pne_sym.model.manipulator import JointKind, PlatformJointKind
+from tests.mechanics.evaluation import Array, Names
+from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
+from tests.oracle.jets import cross_matrix
+
+
+class Facts:
+    """What the oracle says about one leg at one acceleration; joints count from 1.
+
+    The axes of frames (`turn`, `axes`), to which some scalars refer, are the derivation's; they
+    are constant in a link and are turned by the oracle's rotations.
+    """
+
+    def __init__(self, names: Names) -> None:
+        assert names.index is not None
+        self.names, self.s, self.leg = names, names.situation, names.leg
+        self.index = names.index
+        self.manipulator = self.s.manipulator
+        self.planar = is_planar(self.manipulator.space)
+        self.result = self.s.oracle.legs[self.index]
+        self.motion, self.platform = self.result.motion, self.s.oracle.platform
+        self.count = len(self.leg.joints)
+        self.gravity = np.array(self.manipulator.gravity)
+        self.q = self._own(self.s.state.q)
+        self.qd, self.qdd = self._own(self.s.oracle.qd), self._own(self.s.oracle.qdd)
+        self.free = [j for j in range(1, self.count + 1) if not self.leg.joints[j - 1].extra]
+        self.extras = [j for j in range(1, self.count + 1) if self.leg.joints[j - 1].extra]
+
+    def _own(self, flat: Array) -> Any:
+        """A leg's entries of a flat vector, with a dummy in front."""
+        return np.concatenate(([np.nan], flat[joint_slices(self.manipulator)[self.index]]))
+
+    # ---- kinematics -------------------------------------------------------------------------
+
+    def turns(self, j: int) -> bool:
+        return self.leg.joints[j - 1].kind is not JointKind.PRISMATIC
+
+    def group(self, j: int) -> int:
+        """The turning joint that link j turns with, 0 for the base."""
+        return max((k for k in range(1, j + 1) if self.turns(k)), default=0)
+
+    def members(self, group: int) -> list[int]:
+        return [j for j in range(1, self.count + 1) if self.group(j) == group]
+
+    def rotation(self, j: int) -> Any:
+        return self.motion.rotation[j - 1] if j else np.array(self.leg.base_frame)
+
+    def link_point(self, i: int, point: Any) -> tuple[Array, Array]:
+        """Position and acceleration of a point fixed in link i (0: the base)."""
+        arm = self.rotation(i) @ np.array(point)
+        if i == 0:
+            return np.array(self.leg.base_point) + arm, np.zeros(3)
+        w, a = self.motion.angular_velocity[i - 1], self.motion.angular_acceleration[i - 1]
+        place = self.motion.origin[i - 1] + arm
+        return place, self.motion.acceleration[i - 1] + np.cross(a, arm) + np.cross(
+            w, np.cross(w, arm)
+        )
+
+    def joint_point(self, j: int) -> tuple[Array, Array]:
+        """Origin of joint j before its own displacement; j = m + 1: the tip."""
+        end = j == self.count + 1
+        offset = self.leg.platform_joint.offset if end else self.leg.joints[j - 1].offset
+        return self.link_point(j - 1, offset)
+
+    def tip_centre(self, j: int) -> Any:
+        """Where the revolutes beyond slide j meet, with the slide at zero."""
+        first = min(k for k in range(j + 1, self.count + 1) if self.turns(k))
+        return self.joint_point(first)[0] - self.q[j] * self.e(j)
+
+    @property
+    def tip(self) -> Any:
+        return self.joint_point(self.count + 1)[0]
+
+    @cached_property
+    def arm(self) -> Any:
+        """Platform origin to connection point."""
+        return self.platform.rotation @ np.array(self.leg.platform_point)
+
+    @property
+    def point(self) -> Any:
+        """Connection point, as the platform carries it."""
+        return self.platform.origin + self.arm
+
+    @property
+    def centripetal(self) -> Any:
+        w = self.platform.angular_velocity
+        return np.cross(w, np.cross(w, self.arm))
+
+    @property
+    def tangential(self) -> Any:
+        return self.platform.acceleration + np.cross(self.platform.angular_acceleration, self.arm)
+
+    def e(self, j: int) -> Any:
+        return self.rotation(j) @ np.array(self.leg.joints[j - 1].axis)
+
+    def v(self, j: int) -> Any:
+        column = np.zeros(3)
+        rows = 2 if self.planar else 3
+        column[:rows] = self.result.jacobian[:rows, j - 1]
+        return column
+
+    def omega(self, j: int) -> Any:
+        return self.motion.angular_velocity[j - 1] if j else np.zeros(3)
+
+    def alpha(self, j: int) -> Any:
+        return self.motion.angular_acceleration[j - 1] if j else np.zeros(3)
+
+    @cached_property
+    def point_leg(self) -> bool:
+        """Whether the leg holds the platform by a force alone."""
+        return self.planar or self.leg.platform_joint.kind is PlatformJointKind.SPHERICAL
+
+    @cached_property
+    def constrained(self) -> bool:
+        return len(self.result.constraint_wrenches) > 0
+
+    @cached_property
+    def duals(self) -> tuple[Array, Array]:
+        """Forces w_j and moments o_j of the reciprocal wrenches: rows by joint number."""
+        w, o = np.full((self.count + 1, 3), np.nan), np.zeros((self.count + 1, 3))
+        if self.point_leg:
+            w[self.free] = np.linalg.pinv(np.array([self.v(j) for j in self.free])).T
+            return w, o
+        task = self.result.rates[:, : task_size(self.manipulator.space)]
+        w[1:] = task[:, :3]
+        if task.shape[1] == 6:
+            o[1:] = task[:, 3:] - np.cross(self.arm, task[:, :3])
+        return w, o
+
+    def w(self, j: int) -> Any:
+        return self.duals[0][j]
+
+    def o(self, j: int) -> Any:
+        return self.duals[1][j]
+
+    # ---- bodies -----------------------------------------------------------------------------
+
+    def mass(self, j: int) -> float:
+        return self.leg.joints[j - 1].link.mass
+
+    def has_mass(self, j: int) -> bool:
+        return not self.leg.joints[j - 1].link.is_massless
+
+    @cached_property
+    def tip_body(self) -> int:
+        """The last link, where it is referred to the connection point; else 0.
+
+        It is where it has inertia, and the leg leaves the connection point free to move.
+        """
+        return self.count if self.has_mass(self.count) and not self.constrained else 0
+
+    def reference(self, j: int) -> tuple[Array, Array]:
+        """Reference point of link j and its acceleration."""
+        if j == self.tip_body:
+            return self.tip, self.tangential + self.centripetal
+        return self.motion.origin[j - 1], self.motion.acceleration[j - 1]
+
+    def tensor(self, j: int) -> Any:
+        """Inertia about the centre of mass, base axes; in the plane izz alone."""
+        local = np.array(self.leg.joints[j - 1].link.inertia, dtype=float)
+        if self.planar:
+            local = np.diag([0.0, 0.0, local[2, 2]])
+        return self.rotation(j) @ local @ self.rotation(j).T
+
+    def first_moment(self, j: int) -> Any:
+        return self.mass(j) * (self.motion.centre[j - 1] - self.reference(j)[0])
+
+    def reference_tensor(self, j: int) -> Any:
+        arm = self.motion.centre[j - 1] - self.reference(j)[0]
+        return self.tensor(j) + point_inertia(self.mass(j), arm)
+
+    def force(self, j: int) -> Any:
+        """Newton: inertia force of link j less its weight."""
+        return self.mass(j) * (self.motion.centre_acceleration[j - 1] - self.gravity)
+
+    def moment(self, j: int) -> Any:
+        """Euler: inertia moment of link j about its centre of mass."""
+        w, tensor = self.omega(j), self.tensor(j)
+        return tensor @ self.alpha(j) + np.cross(w, tensor @ w)
+
+    def moment_about(self, j: int, point: Array) -> Any:
+        return self.moment(j) + np.cross(self.motion.centre[j - 1] - point, self.force(j))
+
+    @property
+    def tip_force(self) -> Any:
+        return self.force(self.count) if self.tip_body else np.zeros(3)
+
+    def gamma(self, j: int) -> float:
+        """All distal inertia and weight along freedom j, the last link's force left out."""
+        return float(self.result.joint_forces[j - 1] - self.v(j) @ self.tip_force)
+
+    def combined(self, *, moment: bool = False, reduced: bool) -> Any:
+        """Sum over the freedoms of the reciprocal wrench times the distal forces."""
+        vectors = self.o if moment else self.w
+        forces = self.gamma if reduced else (lambda j: float(self.result.joint_forces[j - 1]))
+        return np.sum([vectors(j) * forces(j) for j in self.free], axis=0)
+
+    def groups_from(self, group: int) -> list[int]:
+        return [j for j in range(1, self.count + 1) if self.group(j) >= group and self.has_mass(j)]
+
+    @property
+    def tip_mass(self) -> float:
+        """Mass that is counted with the platform."""
+        return self.mass(self.count) if self.tip_body else 0.0
+
+    @cached_property
+    def extra_columns(self) -> list[int]:
+        """Entries of V that are the leg's extra rates."""
+        legs = self.manipulator.legs[: self.index]
+        first = task_size(self.manipulator.space) + sum(j.extra for x in legs for j in x.joints)
+        return [first + k for k in range(len(self.extras))]
+
+    def extra_coordinate(self, j: int) -> float:
+        first = self.extra_columns[self.extras.index(j)] - task_size(self.manipulator.space)
+        return float(self.s.state.X[pose_size(self.manipulator.space) + first])
+
+
+def point_inertia(mass: float, arm: Array) -> Any:
+    matrix: Array = mass * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return matrix
+
+
+def square(w: Array) -> Any:
+    tilde = cross_matrix(w)
+    return tilde @ tilde
+
+
+Value = Callable[[Facts, int], Any]
+LEG: list[tuple[str, Value]] = []
+"""Patterns of a leg's names; a number in the name is the joint's."""
+
+
+def value_of(*patterns: str) -> Callable[[Value], Value]:
+    def register(function: Value) -> Value:
+        LEG.extend((pattern, function) for pattern in patterns)
+        return function
+
+    return register
+
+
+def leg_value(stem: str) -> tuple[Value, int] | None:
+    """The function for a name without its leg type's suffix, and the number in it."""
+    for pattern, function in LEG:
+        match = re.fullmatch(pattern, stem)
+        if match:
+            return function, int(match.group(1)) if match.groups() else 0
+    return None
+
+
+# ---- geometry -----------------------------------------------------------------------------------
+
+
+@value_of("S")
+def _s(f: Facts, j: int) -> Any:
+    return f.point - np.array(f.leg.base_point)
+
+
+@value_of(r"x_(\d+)", r"xi_(\d+)")
+def _x(f: Facts, j: int) -> Any:
+    return f.point - f.joint_point(j)[0]
+
+
+@value_of(r"r_(\d+)")
+def _r(f: Facts, j: int) -> Any:
+    return f.tip - f.joint_point(j)[0]
+
+
+@value_of("gap")
+def _gap(f: Facts, j: int) -> Any:
+    return f.point - f.tip
+
+
+@value_of("size")
+def _size(f: Facts, j: int) -> Any:
+    vectors = [f.leg.base_point, f.leg.platform_point, f.leg.platform_joint.offset]
+    vectors += [joint.offset for joint in f.leg.joints]
+    return np.sqrt(np.sum(np.square(vectors)))
+
+
+@value_of(r"rho_tip_(\d+)")
+def _rho_tip(f: Facts, j: int) -> Any:
+    return f.motion.centre[j - 1] - f.tip
+
+
+@value_of(r"h_(\d+)")
+def _h(f: Facts, j: int) -> Any:
+    return f.first_moment(j)
+
+
+@value_of(r"h_group_(\d+)")
+def _h_group(f: Facts, j: int) -> Any:
+    return sum(f.first_moment(k) for k in f.members(j) if f.has_mass(k))
+
+
+@value_of(r"J_(\d+)")
+def _j(f: Facts, j: int) -> Any:
+    return f.reference_tensor(j)
+
+
+@value_of(r"J_group_(\d+)")
+def _j_group(f: Facts, j: int) -> Any:
+    return sum(f.reference_tensor(k) for k in f.members(j) if f.has_mass(k))
+
+
+@value_of(r"trace_J_(\d+)")
+def _trace(f: Facts, j: int) -> Any:
+    return 0.5 * np.trace(f.reference_tensor(j))
+
+
+@value_of(r"trace_J_group_(\d+)")
+def _trace_group(f: Facts, j: int) -> Any:
+    return 0.5 * np.trace(_j_group(f, j))
+
+
+@value_of(r"Sigma_(\d+)")
+def _sigma(f: Facts, j: int) -> Any:
+    total = _j_group(f, j)
+    return 0.5 * np.trace(total) * np.eye(3) - total
+
+
+@value_of(r"px_(\d+)")
+def _px(f: Facts, j: int) -> Any:
+    if not f.turns(j):
+        return f.e(j) @ _projected(f, j)
+    return f.names.rotation(f"{f.names.leg_type}.turn{j}")[:, 0] @ _projected(f, j)
+
+
+@value_of(r"py_(\d+)")
+def _py(f: Facts, j: int) -> Any:
+    return f.names.rotation(f"{f.names.leg_type}.turn{j}")[:, 1] @ _projected(f, j)
+
+
+def _projected(f: Facts, j: int) -> Any:
+    """What the inverse kinematics of joint j projects on directions fixed in link j - 1."""
+    used = f.names.defined[f"px_{j}{f.names.suffix}"].uses
+    platform_axis = f.leg.platform_joint.axis_platform
+    if any(name.startswith("end_p") for name in used) and platform_axis is not None:
+        return f.platform.rotation @ np.array(platform_axis)  # the joint turns an axis into place
+    vector: Array = _x(f, j)
+    if any(name.startswith("from_centre") for name in used):
+        vector = vector - (f.tip_centre(j) - f.joint_point(j)[0])
+    return vector
+
+
+@value_of(r"c_(\d+)")
+def _cosine(f: Facts, j: int) -> Any:
+    return _turned(f, j)[0]
+
+
+@value_of(r"s_(\d+)")
+def _sine(f: Facts, j: int) -> Any:
+    return _turned(f, j)[1]
+
+
+def _turned(f: Facts, j: int) -> tuple[float, float]:
+    """Cosine and sine of the angle from the turn frame to the link's axes."""
+    turn = f.names.rotation(f"{f.names.leg_type}.turn{j}")
+    axes = f.names.rotation(f"{f.names.leg_type}.axes{j}")
+    local = turn.T @ axes
+    assert np.allclose(local[:, 2], [0.0, 0.0, 1.0], atol=1e-12)
+    return float(local[0, 0]), float(local[1, 0])
+
+
+@value_of(r"q_(\d+)")
+def _q(f: Facts, j: int) -> Any:
+    return f.q[j]
+
+
+# ---- rates --------------------------------------------------------------------------------------
+
+
+@value_of("S_dot")
+def _s_dot(f: Facts, j: int) -> Any:
+    return f.platform.velocity + np.cross(f.platform.angular_velocity, f.arm)
+
+
+@value_of("S_dot_rest")
+def _s_dot_rest(f: Facts, j: int) -> Any:
+    return _s_dot(f, j) - sum(f.v(k) * f.qd[k] for k in f.extras)
+
+
+@value_of(r"v_(\d+)")
+def _v(f: Facts, j: int) -> Any:
+    return f.v(j)
+
+
+@value_of(r"w_(\d+)")
+def _w(f: Facts, j: int) -> Any:
+    return f.w(j)
+
+
+@value_of(r"o_(\d+)")
+def _o(f: Facts, j: int) -> Any:
+    return f.o(j)
+
+
+@value_of(r"qd_(\d+)")
+def _qd(f: Facts, j: int) -> Any:
+    return f.qd[j]
+
+
+@value_of(r"omega_(\d+)")
+def _omega(f: Facts, j: int) -> Any:
+    return f.omega(j)
+
+
+@value_of(r"W_(\d+)")
+def _w_tensor(f: Facts, j: int) -> Any:
+    return square(f.omega(j))
+
+
+# ---- accelerations ------------------------------------------------------------------------------
+
+
+@value_of("u_1")
+def _u(f: Facts, j: int) -> Any:
+    return f.centripetal
+
+
+@value_of("a_p")
+def _a_p(f: Facts, j: int) -> Any:
+    return f.tangential
+
+
+@value_of("S_ddot")
+def _s_ddot(f: Facts, j: int) -> Any:
+    return f.tangential + f.centripetal
+
+
+@value_of(r"zeta_(\d+)")
+def _zeta(f: Facts, j: int) -> Any:
+    return f.alpha(j) - f.alpha(f.group(j - 1)) - f.qdd[j] * f.e(j)
+
+
+@value_of(r"beta_(\d+)")
+def _beta(f: Facts, j: int) -> Any:
+    return f.alpha(j) - sum(f.qdd[k] * f.e(k) for k in range(1, j + 1) if f.turns(k))
+
+
+@value_of("bias")
+def _bias(f: Facts, j: int) -> Any:
+    tip = f.joint_point(f.count + 1)[1]
+    return tip - sum(f.v(k) * f.qdd[k] for k in range(1, f.count + 1))
+
+
+@value_of("rel")
+def _rel(f: Facts, j: int) -> Any:
+    return _s_ddot(f, j) - _bias(f, j) - sum(f.v(k) * f.qdd[k] for k in f.extras)
+
+
+@value_of(r"qdd_(\d+)")
+def _qdd(f: Facts, j: int) -> Any:
+    return f.qdd[j]
+
+
+@value_of(r"alpha_(\d+)")
+def _alpha(f: Facts, j: int) -> Any:
+    return f.alpha(j)
+
+
+@value_of(r"B_(\d+)")
+def _b(f: Facts, j: int) -> Any:
+    return cross_matrix(f.alpha(j)) + square(f.omega(j))
+
+
+@value_of(r"a_o(\d+)")
+def _a_o(f: Facts, j: int) -> Any:
+    return f.joint_point(j)[1]
+
+
+@value_of(r"acc_(\d+)")
+def _acc(f: Facts, j: int) -> Any:
+    return f.reference(j)[1] - f.gravity
+
+
+# ---- forces -------------------------------------------------------------------------------------
+
+
+@value_of(r"phi_(\d+)")
+def _phi(f: Facts, j: int) -> Any:
+    return f.force(j) - f.mass(j) * _acc(f, j)
+
+
+@value_of(r"f_(\d+)")
+def _f(f: Facts, j: int) -> Any:
+    return f.force(j)
+
+
+@value_of(r"mu_(\d+)")
+def _mu(f: Facts, j: int) -> Any:
+    return sum(f.moment_about(k, f.reference(k)[0]) for k in f.members(j) if f.has_mass(k))
+
+
+@value_of(r"N_(\d+)")
+def _n(f: Facts, j: int) -> Any:
+    origin = f.joint_point(j)[0]
+    total = sum(f.moment_about(k, origin) for k in f.groups_from(j))
+    return total - np.cross(f.tip - origin, f.tip_force)
+
+
+@value_of(r"T_(\d+)")
+def _t(f: Facts, j: int) -> Any:
+    return sum(f.force(k) for k in range(j, f.count + 1) if f.has_mass(k)) - f.tip_force
+
+
+@value_of(r"Gamma_(\d+)")
+def _gamma(f: Facts, j: int) -> Any:
+    return f.gamma(j)
+
+
+@value_of("G")
+def _g(f: Facts, j: int) -> Any:
+    return f.combined(reduced=True)
+
+
+@value_of("G_m")
+def _g_m(f: Facts, j: int) -> Any:
+    return f.combined(moment=True, reduced=True)
+
+
+@value_of("c")
+def _c(f: Facts, j: int) -> Any:
+    point = f.tangential + f.centripetal - f.gravity
+    return -f.combined(reduced=False) + f.tip_mass * point
+
+
+@value_of("c_true")
+def _c_true(f: Facts, j: int) -> Any:
+    """The reaction less what the drives (and lambda) contribute."""
+    force = f.result.reaction[:3].copy()
+    tau, lam = iter(f.s.oracle.tau), f.s.oracle.lam
+    for index, leg in enumerate(f.manipulator.legs):
+        for k, joint in enumerate(leg.joints, 1):
+            if joint.actuated:
+                amount = next(tau)
+                if index == f.index and k in f.free:
+                    force -= amount * f.w(k)
+    wrenches = [leg.constraint_wrenches for leg in f.s.oracle.legs]
+    first = sum(len(w) for w in wrenches[: f.index])
+    return force - lam[first : first + len(wrenches[f.index])] @ wrenches[f.index][:, :3]
+
+
+@value_of("c_m")
+def _c_m(f: Facts, j: int) -> Any:
+    return -f.combined(moment=True, reduced=False)
+
+
+@value_of("Q")
+def _q_matrix(f: Facts, j: int) -> Any:
+    w = np.array([f.w(k) for k in f.free])
+    rows = [k - 1 for k in f.free]
+    full = w.T @ f.result.joint_inertia[np.ix_(rows, rows)] @ w
+    return full - f.tip_mass * np.eye(3)
+
+
+@value_of(r"P_(\d+)")
+def _p(f: Facts, j: int) -> Any:
+    column = f.extra_columns[f.extras.index(j)]
+    return f.result.rates[:, column] @ f.result.joint_forces
+
+
+@value_of(r"H_a_(\d+)")
+def _h_a(f: Facts, j: int) -> Any:
+    return np.cross(f.arm, f.w(j)) + f.o(j)
+
+
+# ---- the platform -------------------------------------------------------------------------------
+
+
+class PlatformFacts:
+    """What the oracle says about the platform and the whole."""
+
+    def __init__(self, legs: list[Facts]) -> None:
+        self.legs, self.s = legs, legs[0].s
+        self.oracle, self.motion = self.s.oracle, self.s.oracle.platform
+        self.body = self.s.manipulator.platform
+        self.gravity = np.array(self.s.manipulator.gravity)
+        components = self.s.derivation.coordinates
+        assert components is not None
+        self.linear = [k for k, c in enumerate(components.components) if c < 3]
+        self.angular = [k for k, c in enumerate(components.components) if c >= 3]
+
+    @property
+    def arm(self) -> Any:
+        return self.motion.centre - self.motion.origin
+
+    @property
+    def tensor(self) -> Any:
+        local = np.array(self.body.inertia, dtype=float)
+        if self.legs[0].planar:
+            local = np.diag([0.0, 0.0, local[2, 2]])
+        return self.motion.rotation @ local @ self.motion.rotation.T
+
+    @property
+    def force(self) -> Any:
+        own: Array = self.body.mass * (self.motion.centre_acceleration - self.gravity)
+        return own + sum(f.tip_mass * _acceleration(f) for f in self.legs)
+
+    @property
+    def moment(self) -> Any:
+        w, tensor = self.motion.angular_velocity, self.tensor
+        own: Array = tensor @ self.motion.angular_acceleration + np.cross(w, tensor @ w)
+        own = own + np.cross(
+            self.arm, self.body.mass * (self.motion.centre_acceleration - self.gravity)
+        )
+        return own + sum(np.cross(f.arm, f.tip_mass * _acceleration(f)) for f in self.legs)
+
+    def block(self, matrix: Array, rows: list[int], columns: list[int]) -> Any:
+        return matrix[np.ix_(rows, columns)]
+
+
+def _acceleration(f: Facts) -> Any:
+    return f.tangential + f.centripetal - f.gravity
+
+
+def _lumped_mass(p: PlatformFacts) -> Any:
+    return p.body.mass + sum(f.tip_mass for f in p.legs)
+
+
+def _lumped_moment(p: PlatformFacts) -> Any:
+    return p.body.mass * p.arm + sum(f.tip_mass * f.arm for f in p.legs)
+
+
+def _lumped_tensor(p: PlatformFacts) -> Any:
+    own = p.tensor + point_inertia(p.body.mass, p.arm)
+    return own + sum(point_inertia(f.tip_mass, f.arm) for f in p.legs)
+
+
+PLATFORM: dict[str, Callable[[PlatformFacts], Any]] = {
+    "W_p": lambda p: square(p.motion.angular_velocity),
+    "B_p": lambda p: (
+        cross_matrix(p.motion.angular_acceleration) + square(p.motion.angular_velocity)
+    ),
+    "a_t": lambda p: p.motion.acceleration - p.gravity,
+    "m_star": _lumped_mass,
+    "h_star": _lumped_moment,
+    "J_star": _lumped_tensor,
+    "f_p": lambda p: p.force,
+    "mu_p": lambda p: p.moment,
+    "potential": lambda p: p.oracle.potential,
+}
+"""Quantities of the platform itself."""
+
+ASSEMBLED: dict[str, tuple[str, Callable[[PlatformFacts], Any]]] = {
+    "R_t": ("linear", lambda p: p.oracle.inertia_forces[p.linear]),
+    "R_a": ("angular", lambda p: p.oracle.inertia_forces[p.angular]),
+    "Z_t": ("linear", lambda p: p.oracle.Z[p.linear]),
+    "Z_a": ("angular", lambda p: p.oracle.Z[p.angular]),
+    "M_tt": ("linear linear", lambda p: p.block(p.oracle.M, p.linear, p.linear)),
+    "M_ta": ("linear angular", lambda p: p.block(p.oracle.M, p.linear, p.angular)),
+    "M_aa": ("angular angular", lambda p: p.block(p.oracle.M, p.angular, p.angular)),
+}
+"""Blocks of the whole: the rows (and columns) that are coordinates, and their values."""
