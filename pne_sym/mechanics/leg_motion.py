@@ -261,8 +261,14 @@ class MotionWriter:
         return named
 
     def _closed_loop(self, j: int) -> tuple[Vector, ...]:
-        """The same vector, seen from the base; resolved vectors give way to what they resolve."""
+        """The same vector, seen from the base; resolved vectors give way to what they resolve.
+
+        Where the leg restricts the platform the loop may be open: there the links count alone.
+        """
         x = self.x.get(j)
+        freedoms = sum(not self.g.is_extra(i) for i in range(1, self.g.count + 1))
+        if freedoms < (2 if self.space.planar else 3) + len(self.g.pairs):
+            return ()
         equations = {e.name: e for e in self.book.all_equations()}
         while isinstance(x, VectorSymbol) and x.name in equations and x.name.startswith("xi_"):
             x = self.x[int(x.name.removeprefix("xi_").split("_")[0])]
