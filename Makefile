@@ -14,7 +14,7 @@ VENV ?= .venv
 BIN := $(VENV)/bin
 KATEX := tests/tools/katex
 # The models that stand in generated/; `all` for the whole catalogue.
-MODELS ?= stewart
+MODELS ?= all
 DOCUMENTS = $(wildcard README.md docs/*.md generated/*/*.md)
 PYTEST_ARGS ?=
 

@@ -1,0 +1,1 @@
+"""Generated models, one package each."""
