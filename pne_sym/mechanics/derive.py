@@ -264,10 +264,11 @@ _GEOMETRY = (
 )
 _INVERSE = (
     "The joints are found one after another from the base, each from a quantity that the joints "
-    r"beyond it cannot change. For a joint that turns this is one equation "
-    r"$`K^c_j\,c_j+K^s_j\,s_j=K^r_j`$ for cosine and sine of its angle from the reference "
-    r"direction $`\hat{\mathbf x}^0_j`$; $`\rho_j`$ is its amplitude, and $`\sigma_j`$, the sign "
-    r"of the root, is that of the home position. What is zero by structure is left out."
+    r"beyond it cannot change: the scalar product with a direction fixed in link j. For a joint "
+    r"that turns this is one equation $`K^c_j\,c_j+K^s_j\,s_j=K^r_j`$ for cosine and sine of its "
+    r"angle from the reference direction $`\hat{\mathbf x}^0_j`$; $`\rho_j`$ is its amplitude, and "
+    r"$`\sigma_j`$, the sign of the root, is that of the home position. What is zero by structure "
+    r"is left out."
 )
 _NEWTON_EULER = (
     r"From the last link to the base; of the equilibrium of the links beyond a joint only the "

@@ -116,6 +116,20 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
     return InverseKinematics(solver.q, solver.methods, reasons, [], {})
 
 
+# Units of x, of the direction u fixed in the link, and of u . x, by method.
+_UNITS = {
+    "linear": ("m", "-", "m"),
+    "sphere": ("m", "m", "m^2"),
+    "orientation": ("-", "-", "-"),
+}
+# Constants of a link: symbol and meaning.
+_CONSTANTS = {
+    "un": ("u^x", "component along the x axis of link {j} of the direction fixed in it"),
+    "um": ("u^y", "component along the y axis of link {j} of the direction fixed in it"),
+    "uu": (r"\upsilon", "squared length, across the axis, of the direction fixed in link {j}"),
+}
+
+
 class _Solver:
     def __init__(
         self, book: Book, g: LegGeometry, normal: Vector | None, *, constrained: bool
@@ -338,33 +352,47 @@ class _Solver:
         g, e = self.g, self.g.e[j]
         reference, across, _ = self._turn_axes(j)
         n, m = self._link_axes(j)
+        of_x, of_u, of_product = _UNITS[method]
         A = self._scalar(
-            f"px_{j}", Dot(reference, x), f"x_{{{j}}}", "component along the reference direction"
+            f"px_{j}",
+            Dot(reference, x),
+            f"x_{{{j}}}",
+            "component along the reference direction",
+            of_x,
         )
         B = self._scalar(
-            f"py_{j}", Dot(across, x), f"y_{{{j}}}", "component across the reference direction"
+            f"py_{j}",
+            Dot(across, x),
+            f"y_{{{j}}}",
+            "component across the reference direction",
+            of_x,
         )
-        pattern = self._pattern(j, method, u)
-        u_n = self._scalar_parameter(f"un_{j}", Dot(u, n)) if pattern[0] is None else pattern[0]
-        u_m = self._scalar_parameter(f"um_{j}", Dot(u, m)) if pattern[1] is None else pattern[1]
+        u_n, u_m, along_axis = self._pattern(j, method, u)
+        if u_n is None:
+            u_n = self._constant_of_link(f"un_{j}", Dot(u, n), of_u)
+        if u_m is None:
+            u_m = self._constant_of_link(f"um_{j}", Dot(u, m), of_u)
         K = self._scalar(
             f"Kc_{j}",
             u_n * A + u_m * B,
             f"K^c_{{{j}}}",
-            f"factor of cos in the equation of joint {j}",
+            f"factor of the cosine in the equation of joint {j}",
+            of_product,
         )
         N = self._scalar(
             f"Ks_{j}",
             u_n * B - u_m * A,
             f"K^s_{{{j}}}",
-            f"factor of sin in the equation of joint {j}",
+            f"factor of the sine in the equation of joint {j}",
+            of_product,
         )
-        along = sp.S.Zero if pattern[2] == 0 else Dot(u, e) * Dot(e, x)
+        along = sp.S.Zero if along_axis == 0 else Dot(u, e) * Dot(e, x)
         C = self._scalar(
             f"Kr_{j}",
             value - along,
             f"K^r_{{{j}}}",
-            f"right-hand side: K cos + N sin = C for joint {j}",
+            f"right-hand side of the equation of joint {j}",
+            of_product,
         )
         unit, scale = {
             "linear": ("m^2", g.size**2),
@@ -388,7 +416,7 @@ class _Solver:
                 sigma * sp.sqrt(rho2),
                 rf"\rho_{{{j}}}",
                 "amplitude, with the sign of the branch",
-                "m",
+                of_product,
             )
             self._cosine_sine(j, -N / root, K / root)
             x_n, x_m = u_m * root, -u_n * root
@@ -406,18 +434,19 @@ class _Solver:
                 sigma * sp.sqrt(discriminant),
                 rf"r_{{{j}}}",
                 "root, with the sign of the branch",
-                "m",
+                of_product,
             )
             self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
             x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
-        length2 = self._scalar_parameter(f"uu_{j}", u_n**2 + u_m**2)
+        of_square = "m^2" if of_u == "m" else "-"
+        length2 = self._constant_of_link(f"uu_{j}", u_n**2 + u_m**2, of_square)
         resolved: Vector = self.book.define(
             g.name(f"xi_{j}"),
             (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
             rf"\boldsymbol\xi_{{{j}}}",
             f"the vector from joint {j} to the connection point, resolved along link {j}",
             Law.LOOP_CLOSURE,
-            unit="m",
+            unit=of_x,
             body=g.frame("axes", j),
         )
         return resolved
@@ -439,15 +468,19 @@ class _Solver:
                 return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
         return (None, None, None)
 
-    def _scalar_parameter(self, stem: str, rhs: Any) -> Any:
+    def _constant_of_link(self, stem: str, rhs: Any, unit: str) -> Any:
+        """A scalar made of parameters alone."""
         if rhs.is_number or isinstance(rhs, sp.Symbol):
             return rhs
+        kind, j = stem.split("_")
+        latex, title = _CONSTANTS[kind]
         return self.book.define(
             self.g.name(stem),
             rhs,
-            rf"\mathrm{{{stem.split('_', maxsplit=1)[0]}}}_{{{stem.split('_')[1]}}}",
-            "constant of the link",
+            rf"{latex}_{{{j}}}",
+            title.format(j=j),
             Law.LUMPING,
+            unit=unit,
             parameter=True,
         )
 
@@ -503,7 +536,7 @@ class _Solver:
             return x
         A, B = Dot(reference, x), Dot(across, x)
         along, aside = Dot(tip, n), Dot(tip, m)
-        length2 = self._scalar_parameter(f"uu_{j}", along**2 + aside**2)
+        length2 = self._constant_of_link(f"uu_{j}", along**2 + aside**2, "m^2")
         self.methods[j] = "direct"
         if not self.constrained:
             self._cosine_sine(
