@@ -7,6 +7,7 @@ The pipeline in one line each::
     program = pne_sym.lower(derivation)          # scalar straight-line code
     files = pne_sym.compile_model(manipulator)   # NumPy, C, report, manifest: name -> text
     pne_sym.generate("stewart", "generated")     # the same, written to generated/stewart/
+    pne_sym.draw("stewart", "stewart.svg")       # a picture (needs matplotlib)
 
 >>> import pne_sym
 >>> manipulator = pne_sym.load("planar_3rpr")
@@ -24,6 +25,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from pne_sym.drawing import draw
     from pne_sym.generation import find as load
     from pne_sym.generation import generate
     from pne_sym.lowering.program import lower
@@ -35,12 +37,13 @@ _HOMES = {
     "Manipulator": ("pne_sym.model.manipulator", "Manipulator"),
     "compile_model": ("pne_sym.pipeline", "compile_model"),
     "derive": ("pne_sym.mechanics.derive", "derive"),
+    "draw": ("pne_sym.drawing", "draw"),
     "generate": ("pne_sym.generation", "generate"),
     "load": ("pne_sym.generation", "find"),
     "lower": ("pne_sym.lowering.program", "lower"),
 }
 
-__all__ = ["Manipulator", "compile_model", "derive", "generate", "load", "lower"]
+__all__ = ["Manipulator", "compile_model", "derive", "draw", "generate", "load", "lower"]
 
 
 def __getattr__(name: str) -> Any:

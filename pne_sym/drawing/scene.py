@@ -1,0 +1,216 @@
+"""What there is to see of a manipulator at a pose: joints, links and frames, by their places.
+
+Nothing here knows of colours, views or paper: places and directions in the base frame, from the
+specification's own numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pne_sym.model.closure import pose_at, turned
+from pne_sym.model.loops import COORDINATES, Loops
+from pne_sym.model.manipulator import (
+    Joint,
+    JointKind,
+    Leg,
+    Manipulator,
+    PlatformJointKind,
+    Space,
+)
+
+Array = NDArray[np.float64]
+
+SAME = 1e-6
+"""Points nearer than this part of the mechanism's size are one point."""
+
+
+@dataclass(frozen=True)
+class Turn:
+    """A joint that only turns, at one point: revolute, universal, spherical or rigid.
+
+    Attributes:
+        point: where it is.
+        axes: unit vectors; one for a revolute joint, two for a universal one, else none.
+        driven: for each axis.
+        extra: any of its displacements is a coordinate of its own.
+        kind: R, U, S or rigid.
+        massless: the link that its last axis moves has no inertia.
+    """
+
+    point: Array
+    axes: tuple[Array, ...]
+    driven: tuple[bool, ...]
+    extra: bool
+    kind: str
+    massless: bool = False
+
+
+@dataclass(frozen=True)
+class Slide:
+    """A joint that extends: prismatic or helical.
+
+    Attributes:
+        start: its origin, on the preceding link.
+        end: the origin of the link that it moves.
+        axis: unit vector.
+        driven: it has a drive.
+        extra: its displacement is a coordinate of its own.
+        helical: it is a screw.
+        grounded: the preceding link is the base.
+    """
+
+    start: Array
+    end: Array
+    axis: Array
+    driven: bool
+    extra: bool
+    helical: bool
+    grounded: bool
+
+
+@dataclass(frozen=True)
+class Bar:
+    """A rigid link, or part of one, between two points."""
+
+    start: Array
+    end: Array
+
+
+Part = Turn | Slide | Bar
+
+
+@dataclass(frozen=True)
+class LegScene:
+    """A leg: its parts from the base to the platform joint, which is the last."""
+
+    base: Array
+    parts: tuple[Part, ...]
+
+    @property
+    def points(self) -> Array:
+        """The points that the leg passes, from the base to the platform."""
+        points = [self.base]
+        for part in self.parts:
+            points += [part.point] if isinstance(part, Turn) else [part.start, part.end]
+        return np.array(points)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A manipulator at a pose.
+
+    Attributes:
+        planar: it moves in the plane z = 0.
+        legs: in their order.
+        origin: of the platform frame, in the base frame.
+        frame: rotation of the platform frame.
+        anchors: the platform joints' places on the platform, in the base frame.
+        centre: the fixed centre of rotation, where there is one.
+        size: length of the diagonal of the box around the mechanism, m.
+    """
+
+    planar: bool
+    legs: tuple[LegScene, ...]
+    origin: Array
+    frame: Array
+    anchors: Array
+    centre: Array | None = None
+    size: float = field(default=1.0)
+
+
+def scene_of(manipulator: Manipulator, X: Sequence[float], q: Sequence[float]) -> Scene:
+    """The scene at a pose that closes the loops."""
+    m = manipulator
+    pose = pose_at(m.space, X[: len(COORDINATES[m.space])], m.fixed_centre)
+    slices = Loops(m.space, m.legs, m.fixed_centre).slices()
+    planar = m.space in (Space.POINT, Space.PLANAR)
+    anchors = np.array([pose.t + pose.R @ np.array(leg.platform_point) for leg in m.legs])
+    raw = [_walk(leg, q[s], pose.R, planar=planar) for leg, s in zip(m.legs, slices, strict=True)]
+    points = np.vstack([leg.points for leg in raw] + [anchors])
+    size = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
+    return Scene(
+        planar=planar,
+        legs=tuple(LegScene(leg.base, _joined(leg.parts, SAME * size)) for leg in raw),
+        origin=pose.t,
+        frame=pose.R,
+        anchors=anchors,
+        centre=None if m.fixed_centre is None else np.array(m.fixed_centre),
+        size=size,
+    )
+
+
+def _walk(leg: Leg, q: Sequence[float], platform: Array, *, planar: bool) -> LegScene:
+    """Every joint of a leg by itself, and the bars between them."""
+    base = np.array(leg.base_point, dtype=float)
+    point, frame = base, np.array(leg.base_frame, dtype=float)
+    parts: list[Part] = []
+    for index, (joint, x) in enumerate(zip(leg.joints, q, strict=True)):
+        origin, axis = point + frame @ np.array(joint.offset), frame @ np.array(joint.axis)
+        if any(joint.offset):
+            parts.append(Bar(point, origin))
+        if joint.kind is JointKind.REVOLUTE:
+            parts.append(
+                Turn(origin, (axis,), (joint.actuated,), joint.extra, "R", joint.link.is_massless)
+            )
+            point, frame = origin, frame @ turned(joint.axis, float(x))
+            continue
+        point = origin + (x if joint.kind is JointKind.PRISMATIC else joint.pitch * x) * axis
+        parts.append(_slide(joint, origin, point, axis, grounded=index == 0))
+        if joint.kind is JointKind.HELICAL:
+            frame = frame @ turned(joint.axis, float(x))
+    tip = point + frame @ np.array(leg.platform_joint.offset)
+    if any(leg.platform_joint.offset):
+        parts.append(Bar(point, tip))
+    parts.append(_platform_joint(leg, tip, frame, platform, planar=planar))
+    return LegScene(base, tuple(parts))
+
+
+def _slide(joint: Joint, start: Array, end: Array, axis: Array, *, grounded: bool) -> Slide:
+    helical = joint.kind is JointKind.HELICAL
+    return Slide(start, end, axis, joint.actuated, joint.extra, helical, grounded)
+
+
+def _platform_joint(leg: Leg, tip: Array, frame: Array, platform: Array, *, planar: bool) -> Turn:
+    joint = leg.platform_joint
+    if planar and joint.kind in (PlatformJointKind.SPHERICAL, PlatformJointKind.REVOLUTE):
+        return Turn(tip, (np.array([0.0, 0.0, 1.0]),), (False,), False, "R")
+    axes: list[Array] = []
+    if joint.axis_link is not None:
+        axes.append(frame @ np.array(joint.axis_link))
+    if joint.kind is PlatformJointKind.UNIVERSAL and joint.axis_platform is not None:
+        axes.append(platform @ np.array(joint.axis_platform))
+    return Turn(tip, tuple(axes), (False,) * len(axes), False, joint.kind.value)
+
+
+def _joined(parts: tuple[Part, ...], near: float) -> tuple[Part, ...]:
+    """Revolute joints at one point as the universal or spherical joint that they make."""
+    result: list[Part] = []
+    for part in parts:
+        before = result[-1] if result else None
+        joint = None
+        if isinstance(part, Turn) and isinstance(before, Turn):
+            joint = _pair(before, part, near)
+        if joint is None:
+            result.append(part)
+        else:
+            result[-1] = joint
+    return tuple(result)
+
+
+def _pair(first: Turn, second: Turn, near: float) -> Turn | None:
+    """Two joints with a massless link between as one, or None."""
+    apart = float(np.linalg.norm(first.point - second.point)) > near
+    if apart or not first.massless or second.kind != "R" or first.kind not in {"R", "U"}:
+        return None
+    if abs(float(first.axes[-1] @ second.axes[0])) > SAME:
+        return None
+    driven, extra = first.driven + second.driven, first.extra or second.extra
+    axes = first.axes + second.axes
+    if first.kind == "R":
+        return Turn(first.point, axes, driven, extra, "U", second.massless)
+    return None if any(driven) else Turn(first.point, (), (False,), extra, "S", second.massless)

@@ -1,0 +1,196 @@
+"""A mechanism in space as a picture: solids by kind of joint, painted far to near."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pne_sym.drawing.frames import Plate, base_plate, frame_solids, platform_plate
+from pne_sym.drawing.order import painted
+from pne_sym.drawing.scene import Bar, LegScene, Scene, Slide, Turn
+from pne_sym.drawing.shapes import Label, Picture, Shape
+from pne_sym.drawing.solids import Paint, Solid, ball, box, cylinder, perpendiculars
+from pne_sym.drawing.style import (
+    BASE,
+    LABEL,
+    LINK,
+    OUTLINE,
+    TUBE,
+    Proportions,
+    joint_colours,
+    proportions,
+)
+from pne_sym.drawing.view import View
+
+Array = NDArray[np.float64]
+
+_THREADS = 11
+_TUBE_PART = 0.55
+_CROWDED = 8.0
+
+
+def spatial_picture(scene: Scene, view: View) -> Picture:
+    """The picture of a mechanism in space."""
+    sizes = proportions(scene)
+    plate = base_plate(scene, view, sizes)
+    solids = list(plate.solids)
+    for leg in scene.legs:
+        solids += _Leg(leg, view, sizes).solids()
+    solids += platform_plate(scene, view, sizes, plate.normal)
+    frames, labels = frame_solids(scene, view, sizes)
+    shapes = [shape for solid in painted(solids + frames, view) for shape in solid.shapes]
+    return Picture(tuple(shapes), (*labels, *_numbers(scene, view, plate, sizes)), ())
+
+
+def _numbers(scene: Scene, view: View, plate: Plate, sizes: Proportions) -> list[Label]:
+    """The legs' numbers, off the rim of the base plate."""
+    bases = np.array([leg.base for leg in scene.legs])
+    feet = bases
+    if np.isfinite(plate.top):
+        feet = bases - np.outer(bases @ plate.normal - plate.top, plate.normal)
+    away = feet - feet.mean(axis=0)
+    labels = []
+    for number, (foot, direction) in enumerate(zip(feet, away, strict=True), start=1):
+        unit = direction / (float(np.linalg.norm(direction)) or 1.0)
+        rim = view.flat(foot + 4.0 * sizes.joint * unit)
+        off = view.flat(unit)
+        x, y = 10.0 * off / (float(np.linalg.norm(off)) or 1.0)
+        if y > 2.0:  # behind the leg: beside its foot
+            rim, x, y = view.flat(foot), math.copysign(12.0, x), 2.0
+        below = 5.0 if y < 0.0 else 0.0  # the plate's side is seen in front
+        labels.append(Label(rim, str(number), (x, y - below), LABEL, 7.0, balloon=True))
+    return labels
+
+
+class _Leg:
+    """The solids of a leg."""
+
+    def __init__(self, leg: LegScene, view: View, sizes: Proportions) -> None:
+        self.leg, self.view, self.sizes = leg, view, sizes
+        self.crowded = sizes.apart < _CROWDED * sizes.joint
+
+    def solids(self) -> list[Solid]:
+        """All parts, from the base."""
+        result: list[Solid] = []
+        for index, part in enumerate(self.leg.parts):
+            if isinstance(part, Bar):
+                result.append(self._rod(part.start, part.end, self.sizes.link, LINK))
+            elif isinstance(part, Slide):
+                result += self._rail(part, index) if part.grounded else self._strut(part)
+            else:
+                result += self._turn(part, index)
+        return result
+
+    def _rod(self, start: Array, end: Array, radius: float, colour: str) -> Solid:
+        return cylinder(self.view, start, end, radius, Paint(colour))
+
+    def _turn(self, turn: Turn, index: int) -> list[Solid]:
+        r, view = self.sizes.joint, self.view
+        fill, edge, width = joint_colours(driven=any(turn.driven), extra=turn.extra)
+        bias = 2.0 * r if index == len(self.leg.parts) - 1 else 0.0
+        if turn.kind == "S":
+            return [ball(view, turn.point, 1.3 * r, Paint(fill, edge, width), bias)]
+        if turn.kind == "rigid":
+            halves = tuple(0.9 * r * axis for axis in np.eye(3))
+            return [box(view, turn.point, (halves[0], halves[1], halves[2]), Paint(LINK))]
+        if turn.kind == "R":
+            point, half = turn.point + self._aside(turn, index), 1.7 * r * turn.axes[0]
+            paint = Paint(fill, edge, width)
+            return [cylinder(view, point - half, point + half, 1.2 * r, paint, 1.5 * r + bias)]
+        pins = []
+        for axis, driven in zip(turn.axes, turn.driven, strict=True):
+            colour, edge, width = joint_colours(driven=driven, extra=turn.extra)
+            half = 2.1 * r * axis
+            paint = Paint(colour, edge, width)
+            ends = turn.point - half, turn.point + half
+            pins.append(cylinder(view, *ends, 0.75 * r, paint, r + bias))
+        return [*pins, ball(view, turn.point, 0.95 * r, Paint(fill), bias)]
+
+    def _aside(self, turn: Turn, index: int) -> Array:
+        """Where another joint sits at the same point, a spin joint is shown along its axis."""
+        parts, r = self.leg.parts, self.sizes.joint
+        neighbours = [parts[k] for k in (index - 1, index + 1) if 0 <= k < len(parts)]
+        if not any(
+            isinstance(other, Turn) and float(np.linalg.norm(other.point - turn.point)) < r
+            for other in neighbours
+        ):
+            return np.zeros(3)
+        for other in neighbours:
+            if isinstance(other, Turn):
+                continue
+            middle = 0.5 * (other.start + other.end) - turn.point
+            if abs(float(middle @ turn.axes[0])) > 0.999 * float(np.linalg.norm(middle)) > 0.0:
+                shift: Array = 3.6 * r * middle / np.linalg.norm(middle)
+                return shift
+        return np.zeros(3)
+
+    def _strut(self, slide: Slide) -> list[Solid]:
+        """A tube and the rod in it; the drive is the collar at the tube's mouth."""
+        r, view = self.sizes.joint, self.view
+        mouth = slide.start + _TUBE_PART * (slide.end - slide.start)
+        fill, edge, width = joint_colours(driven=slide.driven, extra=slide.extra)
+        step = slide.axis if float((slide.end - slide.start) @ slide.axis) >= 0.0 else -slide.axis
+        collar = cylinder(
+            view,
+            mouth - 2.6 * r * step,
+            mouth + 0.6 * r * step,
+            1.45 * r,
+            Paint(fill, edge, width),
+            1.2 * r,
+        )
+        rod = self._rod(mouth, slide.end, 0.5 * r, LINK)
+        if slide.helical:
+            rod = self._threaded(rod, mouth, slide.end)
+        return [self._rod(slide.start, mouth, 1.05 * r, TUBE), rod, collar]
+
+    def _threaded(self, rod: Solid, start: Array, end: Array) -> Solid:
+        """The rod with its thread."""
+        a, b = self.view.flat(start), self.view.flat(end)
+        along = b - a
+        across = 0.62 * self.sizes.joint * np.array([-along[1], along[0]])
+        across /= float(np.linalg.norm(along)) or 1.0
+        lean = 0.35 / _THREADS * along
+        turns = []
+        for k in range(1, _THREADS):
+            middle = a + k / _THREADS * along
+            line = np.array([middle - across - lean, middle + across + lean])
+            turns.append(Shape(line, "", OUTLINE, 0.9, closed=False))
+        return Solid(rod.outline, (*rod.shapes, *turns), rod.core, rod.bias)
+
+    def _rail(self, slide: Slide, index: int) -> list[Solid]:
+        """A rail on the base and what slides on it: a carriage beside the next joint, or a sleeve.
+
+        Rails that stand close together have sleeves.
+        """
+        r = self.sizes.joint
+        down = np.zeros(3) if self.crowded else self._away(slide, index) * 1.9 * r
+        travel = slide.end - slide.start
+        sense = slide.axis if float(travel @ slide.axis) >= 0.0 else -slide.axis
+        start, end = slide.start - 2.0 * r * sense, slide.end + 4.0 * r * sense
+        fill, edge, width = joint_colours(driven=slide.driven, extra=slide.extra)
+        rail = self._rod(start + down, end + down, 0.7 * r, BASE)
+        if self.crowded:
+            half = 3.2 * r * slide.axis
+            ends = slide.end - half, slide.end + half
+            return [rail, cylinder(self.view, *ends, 1.35 * r, Paint(fill, edge, width), r)]
+        side = np.cross(slide.axis, down)
+        side *= 1.5 * r / float(np.linalg.norm(side))
+        halves = (2.2 * r * slide.axis, side, 0.45 * down)
+        return [rail, box(self.view, slide.end + down, halves, Paint(fill, edge, width))]
+
+    def _away(self, slide: Slide, index: int) -> Array:
+        """Unit vector across the rail, away from the next link."""
+        points = [
+            part.point if isinstance(part, Turn) else part.end
+            for part in self.leg.parts[index + 1 :]
+        ]
+        for point in points:
+            link = slide.end - point
+            across = link - (link @ slide.axis) * slide.axis
+            length = float(np.linalg.norm(across))
+            if length > self.sizes.joint:
+                unit: Array = across / length
+                return unit
+        return perpendiculars(slide.axis)[0]
