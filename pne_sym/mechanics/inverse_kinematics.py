@@ -138,7 +138,11 @@ class _Solver:
         self.g = g
         self.normal = normal
         self.constrained = constrained
-        self.q: dict[int, Any] = {}
+        self.q: dict[int, Any] = {
+            j: sp.Symbol(g.name(f"y_{j}_extra"), real=True)
+            for j in range(1, g.count + 1)
+            if g.is_extra(j)
+        }
         self.methods: dict[int, str] = {}
         self.reasons: dict[int, str] = {}
         self.branches: list[Branch] = []
@@ -574,21 +578,16 @@ class _Solver:
         """The displacement is a coordinate of its own."""
         g, book = self.g, self.book
         self.methods[j] = "given"
-        name = g.name(f"y_{j}_extra")
-        q = sp.Symbol(name, real=True)
         book.note_quantity(
             Quantity(
-                name,
+                self.q[j].name,
                 f"y_{{{j}}}",
                 f"extra coordinate: displacement of joint {j}",
                 "rad" if g.turns(j) else "m",
             )
         )
-        if not g.turns(j):
-            self.q[j] = q
-            return x
-        self.q[j] = q
-        self._angle_of_displacement(j)
+        if g.turns(j):
+            self._angle_of_displacement(j)
         return x
 
     def _angle_of_displacement(self, j: int) -> None:
@@ -670,6 +669,7 @@ class _Solver:
 
     def _numeric(self, j: int, reason: str = "") -> None:
         self.methods[j] = "numeric"
+        self.q[j] = sp.Symbol(self.g.name(f"q_{j}"), real=True)
         self.reasons[j] = reason or (
             "no direction or distance is left unchanged by the joints beyond it"
         )

@@ -501,7 +501,7 @@ class _Builder:
             for i in (tilt,)
         ]
         across = self.book.define(
-            g.name(f"across_{j}"),
+            g.name(f"aside_{j}"),
             Cross(directions[0], axis),
             rf"\mathbf a'_{{{j}}}",
             f"direction across axis {j}",
