@@ -13,7 +13,7 @@ import typer
 import typer.core
 
 from pne_sym import comparison, writer
-from pne_sym.cli import review, starter
+from pne_sym.cli import drawing, review, starter
 from pne_sym.cli.arguments import GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
@@ -76,6 +76,7 @@ Examples:
   pne-gen all --out generated/ --jobs 4    the whole catalogue
   pne-gen check stewart --out generated/   is what stands there up to date?
   pne-gen list                             what the catalogue has
+  pne-gen draw stewart --out stewart.svg   a picture of it at home
   pne-gen explain stewart ups-K5           an equation: law, uses, users, code
 
 \b
@@ -181,6 +182,7 @@ def check(
 
 app.command("new")(starter.new)
 app.command("explain")(review.explain)
+app.command("draw")(drawing.draw)
 
 
 def _catalogue() -> tuple[str, ...]:

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 GENERATE = "NAME_OR_SPEC..."
 """Name of the command that is meant where a model stands; no model can have it."""
 
-COMMANDS = ("list", "all", "check", "explain", "new")
-NOT_YET = ("diff", "draw")
+COMMANDS = ("list", "all", "check", "explain", "new", "draw")
+NOT_YET = ("diff",)
 OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage", "--legs", "--space")
 _OF_THE_PROGRAM = ("--help", "-h", "--version")
 
