@@ -159,20 +159,21 @@ def test_energy_is_accounted_for(name: str, method: str) -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_stabilisation_is_what_keeps_it_there(name: str) -> None:
-    """Steps of 20 ms: without, the error of the integrator adds up."""
-    drift = simulated(name, "none", step=0.02).gap[-1]
-    assert simulated(name, "projection", step=0.02).gap.max() < 1e-9 < 1e-3 * drift
-    assert simulated(name, "baumgarte", step=0.02).gap[-1] < drift / 3
+def test_projection_stops_the_drift(name: str) -> None:
+    """Steps of 20 ms: without, the errors of the integrator add up."""
+    assert simulated(name, "none", step=0.02).gap[-1] > 1e-7
+    assert simulated(name, "projection", step=0.02).gap.max() < 1e-12
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_finds_back_from_off_the_manifold(name: str) -> None:
-    """It starts some millimetres off its constraints."""
-    run = simulated(name, "baumgarte", offset=5e-3)
-    assert np.isfinite(np.array(run)).all()
-    assert run.gap[0] > 1e-3
-    assert run.gap[-1] < 1e-6
+def test_baumgarte_finds_back(name: str) -> None:
+    """It starts some millimetres off its constraints; left alone it stays off."""
+    left, led = (simulated(name, method, offset=5e-3) for method in ("none", "baumgarte"))
+    assert np.isfinite(np.array(left)).all()
+    assert np.isfinite(np.array(led)).all()
+    assert led.gap[0] == left.gap[0] > 1e-3
+    assert left.gap[-1] > 0.1 * left.gap[0]
+    assert led.gap[-1] < 1e-7
 
 
 def off_the_manifold(name: str, seed: int) -> tuple[Any, Any, Array, Array, Array]:
@@ -189,7 +190,7 @@ def off_the_manifold(name: str, seed: int) -> tuple[Any, Any, Array, Array, Arra
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_everything_is_finite_off_the_manifold(name: str, seed: int) -> None:
     model, p, X, V, A = off_the_manifold(name, seed)
-    assert np.abs(model.constraints(X, p)).max(axis=-1).min() > 1e-4
+    assert np.median(np.abs(model.constraints(X, p))) > 1e-3
     tau, lam = model.inverse_dynamics(X, V, A, p)
     values = [
         *model.dynamics(X, V, p), tau, lam, *model.forward_dynamics(X, V, tau, p),
@@ -240,6 +241,7 @@ def test_constraints_and_their_derivatives(name: str, seed: int) -> None:
 
     def moved(h: float) -> Array:
         """The pose after a time, of second order in the time."""
+
         def rate(X: Array, V: Array) -> Array:
             return np.asarray(model.X_dot(X, V) if model.NQ == 7 else V)
 
