@@ -1,0 +1,1 @@
+"""Random mechanisms of every kind, derived, generated and compared with the oracle."""

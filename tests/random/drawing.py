@@ -1,0 +1,505 @@
+"""Mechanisms drawn at random: the structure first, then a geometry that closes at a home.
+
+Legs of one plan have one structure (leg type) and geometries of their own.  A drawn geometry
+is kept if legs, drives, constraints and inertia are away from singularities at home.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pne_sym.model.manipulator import (
+    ZERO3,
+    Body,
+    Home,
+    Joint,
+    JointKind,
+    Leg,
+    Manipulator,
+    PlatformJoint,
+    PlatformJointKind,
+    Space,
+    Vector3,
+)
+from tests.oracle.chain import chain_poses
+from tests.oracle.closure import OracleError, leg_closure, perpendicular_pair
+from tests.oracle.coordinates import (
+    extra_indices,
+    is_planar,
+    passive_extra_rows,
+    platform_position,
+    platform_rotation,
+    quaternion_of_vector,
+    rotation_from_quaternion,
+    task_size,
+)
+from tests.oracle.jets import Array, constant
+from tests.oracle.projection import project
+from tests.oracle.randomisation import matrix3, random_inertia, vector3
+
+LEG_QUALITY = 0.06
+"""Least reciprocal condition number of a leg's freedoms."""
+DRIVE_QUALITY = 0.02
+"""Least reciprocal condition number of drives and constraints together."""
+INERTIA_QUALITY = 1e-5
+"""Least reciprocal condition number of the inertia matrix that drives see."""
+
+_R, _P, _H = JointKind.REVOLUTE, JointKind.PRISMATIC, JointKind.HELICAL
+_S, _END_R = PlatformJointKind.SPHERICAL, PlatformJointKind.REVOLUTE
+_END_U, _RIGID = PlatformJointKind.UNIVERSAL, PlatformJointKind.RIGID
+_MOMENTS = {_S: 0, _END_U: 1, _END_R: 2, _RIGID: 3}
+_AXES = np.eye(3)
+
+_SPACES = {
+    Space.SPATIAL: 0.36,
+    Space.PLANAR: 0.2,
+    Space.POINT: 0.08,
+    Space.TRANSLATIONAL: 0.18,
+    Space.SPHERICAL: 0.18,
+}
+_LEGS = {
+    Space.SPATIAL: (2, 7),
+    Space.PLANAR: (2, 5),
+    Space.POINT: (2, 4),
+    Space.TRANSLATIONAL: (2, 5),
+    Space.SPHERICAL: (2, 5),
+}
+
+
+class NothingDrawn(Exception):
+    """No regular geometry was found for a structure."""
+
+
+@dataclass(frozen=True)
+class _JointPlan:
+    """Structure of a joint.
+
+    Attributes:
+        kind: R, P or H.
+        axis: how it is drawn.
+        present: which components of the offset there are.
+        link: "full", "point" (a mass without inertia) or "none".
+        tied: the axis follows from that of the preceding joint: "parallel", "across" or "".
+        extra: its displacement is a coordinate of its own.
+        turned_in: index of the coordinate direction that a plain axis has, else None.
+    """
+
+    kind: JointKind
+    turned_in: int | None
+    present: tuple[bool, bool, bool]
+    link: str
+    tied: str = ""
+    extra: bool = False
+
+
+@dataclass(frozen=True)
+class _LegPlan:
+    """Structure of a leg; axes of the platform joint: a direction's index, or None."""
+
+    joints: tuple[_JointPlan, ...]
+    end: PlatformJointKind
+    present: tuple[bool, bool, bool]
+    link_axis: int | None
+    platform_axis: int | None
+
+
+def draw(seed: int, *, light: bool = False) -> Manipulator:
+    """The mechanism of a seed.
+
+    Args:
+        seed: of the generator.
+        light: few leg types and short chains only, for a quick run.
+    """
+    rng = np.random.default_rng(seed)
+    while True:
+        try:
+            return _Drawing(rng, light=light).run()
+        except NothingDrawn:
+            continue
+
+
+class _Drawing:
+    def __init__(self, rng: np.random.Generator, *, light: bool) -> None:
+        self.rng, self.light = rng, light
+        self.space = Space(rng.choice(list(_SPACES), p=list(_SPACES.values())))
+        self.planar = is_planar(self.space)
+        # How far from the textbook: aligned axes without offsets, or all general.
+        self.wild = float(rng.choice([0.0, 0.35, 0.8]))
+
+    def run(self) -> Manipulator:
+        rng = self.rng
+        least, most = _LEGS[self.space]
+        count = int(rng.integers(least, most + 1))
+        types = min(
+            count,
+            int(rng.choice([1, 2, 3], p=[0.75, 0.25, 0.0] if self.light else [0.4, 0.35, 0.25])),
+        )
+        plans = [self._leg_plan() for _ in range(types)]
+        owner = sorted([*range(types), *rng.integers(0, types, count - types)])
+        for _ in range(4):
+            try:
+                found = self._geometry([plans[k] for k in owner])
+            except OracleError:
+                continue
+            marked = self._marks(found, owner)
+            if marked is not None:
+                return marked
+        raise NothingDrawn
+
+    # ---- structure -------------------------------------------------------------------
+
+    def _leg_plan(self) -> _LegPlan:
+        rng = self.rng
+        if self.planar:
+            kinds, weights = [_END_R, _S], [0.8, 0.2]
+        else:
+            kinds, weights = [_S, _END_U, _END_R, _RIGID], [0.55, 0.2, 0.15, 0.1]
+        end = kinds[int(rng.choice(len(kinds), p=weights))]
+        needed = 2 if self.planar else 3 + _MOMENTS[end]
+        surplus = int(rng.choice([0, -1, -2, 1, 2], p=[0.6, 0.13, 0.04, 0.18, 0.05]))
+        if self.light and needed > 3:
+            surplus = min(surplus, 0)
+        length = max(1, needed + surplus)
+        joints = self._joints(length)
+        extras = max(0, surplus)
+        for index in rng.permutation(length)[:extras]:
+            joints[index] = replace(joints[index], extra=True)
+        plan = _LegPlan(tuple(joints), end, self._present(), self._direction(), self._direction())
+        return plan
+
+    def _joints(self, length: int) -> list[_JointPlan]:
+        rng, joints = self.rng, []
+        while len(joints) < length:
+            macro = str(rng.choice(["", "U", "C", "S"], p=[0.6, 0.2, 0.1, 0.1]))
+            size = {"": 1, "U": 2, "C": 2, "S": 3}[macro]
+            if self.planar or len(joints) + size > length:
+                macro = ""
+            joints += self._part(macro, joints)
+        return joints
+
+    def _part(self, macro: str, before: list[_JointPlan]) -> list[_JointPlan]:
+        """One joint, or a joint of several freedoms: concurrent, without mass between."""
+        first = self._joint(before)
+        if not macro:
+            return [first]
+        none = (False, False, False)
+        if macro == "C":
+            kinds = [_R, _P] if self.rng.random() < 0.7 else [_P, _R]
+            hollow = replace(first, kind=kinds[0], link="none")
+            return [hollow, replace(first, kind=kinds[1], present=none, tied="parallel")]
+        parts = [replace(first, kind=_R)]
+        for _ in range({"U": 1, "S": 2}[macro]):
+            parts[-1] = replace(parts[-1], link="none")
+            across = None
+            if first.turned_in is not None:
+                across = ((parts[-1].turned_in or 0) + int(self.rng.integers(1, 3))) % 3
+            parts.append(
+                _JointPlan(_R, across, none, self._link(), "" if across is not None else "across")
+            )
+        return parts
+
+    def _joint(self, before: list[_JointPlan]) -> _JointPlan:
+        rng = self.rng
+        if self.planar:
+            kind = _R if rng.random() < 0.6 else _P
+            direction = 2 if kind is _R else self._direction(2)
+            return _JointPlan(kind, direction, self._present(), self._link())
+        kind = [_R, _P, _H][int(rng.choice(3, p=[0.58, 0.3, 0.12]))]
+        tied, direction = "", self._direction()
+        if before and rng.random() < 0.25:
+            tied = str(rng.choice(["parallel", "across"]))
+            last = before[-1].turned_in
+            if last is None:
+                direction = None
+            elif tied == "parallel":
+                direction, tied = last, ""
+            elif direction == last:
+                direction, tied = (last + 1) % 3, ""
+        return _JointPlan(kind, direction, self._present(), self._link(), tied)
+
+    def _direction(self, number: int = 3) -> int | None:
+        general = self.rng.random() < self.wild
+        return None if general else int(self.rng.integers(number))
+
+    def _present(self) -> tuple[bool, bool, bool]:
+        """Which components an offset has."""
+        rng = self.rng
+        way = str(rng.choice(["none", "one", "some", "all"], p=[0.4, 0.3, 0.15, 0.15]))
+        flags = {
+            "none": np.zeros(3),
+            "one": np.eye(3)[rng.integers(2 if self.planar else 3)],
+            "some": rng.integers(0, 2, 3),
+            "all": np.ones(3),
+        }[way]
+        x, y, z = (bool(flag) for flag in flags)
+        return (x, y, z and not self.planar)
+
+    def _link(self) -> str:
+        return str(self.rng.choice(["full", "point", "none"], p=[0.65, 0.1, 0.25]))
+
+    # ---- geometry --------------------------------------------------------------------
+
+    def _vector(self, spread: float) -> Vector3:
+        vector = self.rng.uniform(-spread, spread, 3)
+        return vector3(vector * (1.0, 1.0, 0.0 if self.planar else 1.0))
+
+    def _unit(self, accept: Callable[[Array], bool] = lambda _: True) -> Array:
+        """A direction away from the coordinate directions."""
+        while True:
+            drawn = np.array(self._vector(1.0))
+            size = np.linalg.norm(drawn)
+            if size > 0.3 and np.abs(drawn).max() < 0.95 * size and accept(drawn / size):
+                return np.asarray(drawn / size)
+
+    def _geometry(self, plans: list[_LegPlan]) -> Manipulator:
+        """Legs of these plans, closed at a random home, all joints without drives."""
+        rng = self.rng
+        point = self.space is Space.POINT
+        inertia = random_inertia(rng, 0.05)
+        platform = Body(3.0, self._vector(0.1), inertia)
+        gravity = self._vector(9.0)
+        empty = Manipulator(
+            name=f"random_{rng.integers(1_000_000)}",
+            title="a random mechanism",
+            space=self.space,
+            gravity=ZERO3 if rng.random() < 0.08 else gravity,
+            platform=Body(mass=3.0) if point else platform,
+            legs=(),
+            home=Home(X=(), q=()),
+            fixed_centre=self._vector(0.2) if self.space is Space.SPHERICAL else None,
+        )
+        pose = self._pose()
+        legs = [self._leg(plan, empty, pose) for plan in plans]
+        q = np.concatenate([displacements for _, displacements in legs])
+        found = replace(empty, legs=tuple(leg for leg, _ in legs))
+        X = np.concatenate([pose, q[extra_indices(found)]])
+        return replace(found, home=Home(tuple(map(float, X)), tuple(map(float, q))))
+
+    def _pose(self) -> Array:
+        rng = self.rng
+        place = rng.uniform(-0.3, 0.3, 3)
+        level = rng.random() < 0.3
+        turn = quaternion_of_vector(np.zeros(3) if level else rng.uniform(-0.6, 0.6, 3))
+        poses: dict[Space, Array] = {
+            Space.POINT: place[:2],
+            Space.PLANAR: place * (1.0, 1.0, 0.0 if level else 2.0),
+            Space.SPATIAL: np.concatenate([place, turn]),
+            Space.TRANSLATIONAL: place,
+            Space.SPHERICAL: turn,
+        }
+        return poses[self.space]
+
+    def _leg(self, plan: _LegPlan, empty: Manipulator, pose: Array) -> tuple[Leg, Array]:
+        for _ in range(25):
+            leg, q = self._any_leg(plan, empty, pose)
+            free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
+            jacobian = leg_closure(empty, leg, pose, q).joints[:, free]
+            if not free or len(free) > len(jacobian):
+                raise OracleError("a leg without or with too many freedoms")
+            sizes = np.linalg.norm(jacobian, axis=0)
+            if sizes.min() < LEG_QUALITY:
+                continue
+            values = np.linalg.svd(jacobian, compute_uv=False)
+            if values.min() > LEG_QUALITY * values.max():
+                return leg, q
+        raise OracleError("no regular leg")
+
+    def _any_leg(self, plan: _LegPlan, empty: Manipulator, pose: Array) -> tuple[Leg, Array]:
+        rng = self.rng
+        joints = self._real_joints(plan)
+        q = np.array(
+            [rng.uniform(0.2, 0.8) if j.kind is _P else rng.uniform(-1.2, 1.2) for j in joints]
+        )
+        tilt = rng.uniform(-3.0, 3.0, 3) * ((0.0, 0.0, 1.0) if self.planar else (1.0, 1.0, 1.0))
+        if rng.random() < 0.2:
+            tilt *= 0.0
+        frame = rotation_from_quaternion(quaternion_of_vector(tilt))
+        seat = ZERO3 if self.space is Space.POINT else self._vector(0.4)
+        end = PlatformJoint(plan.end, offset=self._offset(plan.present))
+        leg = Leg(ZERO3, matrix3(frame), joints, end, seat)
+        rotation = platform_rotation(empty, pose)
+        last = chain_poses(replace(leg, base_frame=matrix3(_AXES)), constant(q))[-1].rotation.value
+        if not self.planar and plan.end is not _S:
+            leg = self._ended(leg, plan, last, rotation)
+        gap = platform_position(empty, pose) + rotation @ np.array(seat)
+        frame = np.array(leg.base_frame)
+        link = chain_poses(leg, constant(q))[-1]
+        tip = link.origin.value + link.rotation.value @ np.array(end.offset)
+        return replace(leg, base_point=vector3(gap - tip)), q
+
+    def _ended(self, leg: Leg, plan: _LegPlan, last: Array, rotation: Array) -> Leg:
+        """The leg with a platform joint that agrees with the home."""
+        rng, end = self.rng, leg.platform_joint
+        to_platform = rotation.T @ np.array(leg.base_frame) @ last
+        if plan.end is _RIGID:
+            return replace(leg, platform_joint=replace(end, rotation=matrix3(to_platform.T)))
+        axis = self._unit() if plan.link_axis is None else _AXES[plan.link_axis]
+        across = axis
+        if plan.end is _END_U:
+            angle = rng.uniform(0.0, 2.0 * np.pi)
+            one, two = perpendicular_pair(axis)
+            across = np.cos(angle) * one + np.sin(angle) * two
+        on_platform = to_platform @ across
+        if plan.platform_axis is not None:
+            # Turn the base frame so that the axis has this direction in the platform.
+            wanted = _AXES[plan.platform_axis]
+            turn = rotation @ _aligning(on_platform, wanted) @ rotation.T
+            leg = replace(leg, base_frame=matrix3(turn @ np.array(leg.base_frame)))
+            on_platform = wanted
+        end = replace(end, axis_link=vector3(axis), axis_platform=vector3(on_platform))
+        return replace(leg, platform_joint=end)
+
+    def _real_joints(self, plan: _LegPlan) -> tuple[Joint, ...]:
+        joints: list[Joint] = []
+        for part in plan.joints:
+            axis = self._axis(part, np.array(joints[-1].axis) if joints else None)
+            joints.append(
+                Joint(
+                    kind=part.kind,
+                    axis=vector3(axis),
+                    offset=self._offset(part.present),
+                    pitch=float(self.rng.uniform(0.03, 0.12)) if part.kind is _H else 0.0,
+                    extra=part.extra,
+                    link=self._body(part.link),
+                )
+            )
+        return tuple(joints)
+
+    def _axis(self, part: _JointPlan, last: Array | None) -> Array:
+        if part.turned_in is not None:
+            return np.asarray(_AXES[part.turned_in])
+        if last is not None and part.tied == "parallel":
+            return np.asarray(last)
+        if last is not None and part.tied == "across":
+            one, two = perpendicular_pair(last)
+            angle = self.rng.uniform(0.5, 1.0)
+            return np.asarray(np.cos(angle) * one + np.sin(angle) * two)
+        if self.planar:
+            return self._unit()
+        # Without relation to the preceding axis.
+        return self._unit(lambda unit: last is None or 0.1 < abs(float(unit @ last)) < 0.9)
+
+    def _offset(self, present: tuple[bool, bool, bool]) -> Vector3:
+        sizes = self.rng.uniform(0.12, 0.45, 3) * self.rng.choice([-1.0, 1.0], 3)
+        return vector3(np.where(present, sizes, 0.0))
+
+    def _body(self, link: str) -> Body:
+        if link == "none":
+            return Body()
+        mass, centre = float(self.rng.uniform(0.5, 2.0)), self._vector(0.2)
+        if link == "point":
+            return Body(mass, centre)
+        return Body(mass, centre, random_inertia(self.rng, 0.03))
+
+    # ---- marks -----------------------------------------------------------------------
+
+    def _marks(self, found: Manipulator, owner: list[int]) -> Manipulator | None:
+        """The mechanism with drives: as many as freedoms, more, or fewer; None if singular."""
+        rng = self.rng
+        all_driven = [[True] * len(leg.joints) for leg in found.legs]
+        nv = task_size(found.space) + len(extra_indices(found))
+        X, q = np.array(found.home.X), np.array(found.home.q)
+        free = project(_driven(found, all_driven), X, q, np.zeros(nv))
+        if not _regular(free.Hk.T) and free.Hk.size:
+            return None
+        freedoms = nv - free.Hk.shape[1]
+        if freedoms < 1:
+            return None
+        wish = int(rng.choice([0, 1, 2, -1], p=[0.7, 0.12, 0.1, 0.08]))
+        by_leg = not self.light and rng.random() < 0.15  # marks of each leg, not of each type
+        for _ in range(60):
+            marks = self._some_marks(found, owner, by_leg=by_leg)
+            drives = sum(map(sum, marks))
+            if not drives or drives > freedoms + max(wish, 0) or drives < freedoms + min(wish, 0):
+                continue
+            made = _driven(found, marks)
+            try:
+                if self._good(made, np.array(made.home.X), np.array(made.home.q)):
+                    return made
+            except OracleError:
+                continue
+        return None
+
+    def _some_marks(
+        self, found: Manipulator, owner: list[int], *, by_leg: bool
+    ) -> list[list[bool]]:
+        rng, types = self.rng, {}
+        marks = []
+        for leg, kind in zip(found.legs, owner, strict=True):
+            if by_leg or kind not in types:
+                size = len(leg.joints)
+                drives = rng.permutation(size)[
+                    : int(rng.choice([0, 1, 2, 3], p=[0.1, 0.6, 0.2, 0.1]))
+                ]
+                types[kind] = [index in drives for index in range(size)]
+            marks.append(types[kind])
+        return marks
+
+    def _good(self, made: Manipulator, X: Array, q: Array) -> bool:
+        """Whether drives and inertia are away from singularities."""
+        nv = task_size(made.space) + len(extra_indices(made))
+        state = project(made, X, q, np.zeros(nv))
+        passive = passive_extra_rows(made)
+        rows = [row for row in range(nv) if row not in passive]
+        drives = np.hstack([state.H, state.Hk])[rows]
+        if not _regular(drives):
+            return False
+        if np.linalg.svd(drives, compute_uv=False)[-1] < 0.02:
+            return False
+        values = np.linalg.eigvalsh(state.M)
+        return bool(values[0] > INERTIA_QUALITY * values[-1])
+
+
+def _regular(matrix: Array) -> bool:
+    """Whether the rows (or columns, if there are fewer) are far from dependent."""
+    if not matrix.size:
+        return False
+    values = np.linalg.svd(matrix, compute_uv=False)
+    return bool(values[-1] > DRIVE_QUALITY * values[0])
+
+
+def _driven(manipulator: Manipulator, marks: list[list[bool]]) -> Manipulator:
+    legs = tuple(
+        replace(
+            leg,
+            joints=tuple(
+                replace(joint, actuated=mark) for joint, mark in zip(leg.joints, own, strict=True)
+            ),
+        )
+        for leg, own in zip(manipulator.legs, marks, strict=True)
+    )
+    return replace(manipulator, legs=legs)
+
+
+def _aligning(vector: Array, wanted: Array) -> Array:
+    """A rotation that takes one unit vector to another."""
+    axis = np.cross(vector, wanted)
+    sine, cosine = float(np.linalg.norm(axis)), float(vector @ wanted)
+    if sine < 1e-12:
+        axis, sine = perpendicular_pair(vector)[0], 0.0
+    else:
+        axis = axis / sine
+    return rotation_from_quaternion(quaternion_of_vector(axis * np.arctan2(sine, cosine)))
+
+
+def describe(manipulator: Manipulator) -> str:
+    """One line: space, and per leg its joints and platform joint."""
+    legs = []
+    for leg in manipulator.legs:
+        joints = [_code(joint) for joint in leg.joints]
+        legs.append(f"{' '.join(joints)} | {leg.platform_joint.kind}")
+    kinds = dict.fromkeys(legs)
+    return f"{manipulator.space}: " + "; ".join(f"{legs.count(k)} x {k}" for k in kinds)
+
+
+def _code(joint: Joint) -> str:
+    axis = "t"
+    for letter, direction in zip("xyz", _AXES, strict=True):
+        if joint.axis == tuple(direction):
+            axis = letter
+    offset = "".join(c for c, v in zip("xyz", joint.offset, strict=True) if v != 0.0)
+    marks = "*" * joint.actuated + "+" * joint.extra + "0" * joint.link.is_massless
+    return f"{joint.kind}{axis}{marks}{f'({offset})' if offset else ''}"

@@ -1,0 +1,290 @@
+"""The generated code of a drawn mechanism against the independent projection.
+
+Every compared quantity is an error relative to its largest entry.  Where a leg leaves
+directions out, the split of its inertia between free and constrained directions is a matter
+of choice; there the reduced quantities are compared, which are not.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.numpy_backend import NumpyBackend
+from pne_sym.model.errors import SpecError
+from pne_sym.model.manipulator import JointKind, Manipulator
+from pne_sym.model.reader import checked
+from pne_sym.pipeline import compile_bundle
+from tests.backends.c_library import CLibrary
+from tests.oracle.closure import OracleError
+from tests.oracle.comparison import relative_error
+from tests.oracle.coordinates import extra_indices, passive_extra_rows
+from tests.oracle.jets import Array
+from tests.oracle.projection import RANK_TOLERANCE, Result, admissible, project
+from tests.oracle.projection import complete_acceleration as complete
+from tests.oracle.specs import State, random_state
+
+TOLERANCE = 1e-9
+"""Largest error of a right answer; legs and drives of what is drawn are well conditioned."""
+GUESS = 0.02
+"""How far the first guess of an iterated leg is off, m or rad."""
+
+
+@dataclass
+class Verdict:
+    """What became of a mechanism.
+
+    Attributes:
+        refused: the reason, if it is outside the method.
+        stateless: the oracle found no regular state beside home.
+        errors: worst error by quantity.
+        iterated: whether displacements are found by iteration.
+        constrained: whether legs restrict the platform.
+        compiled: whether C was compared as well.
+        other_branch: states at which iteration from home found another closure.
+    """
+
+    refused: str = ""
+    stateless: bool = False
+    errors: dict[str, float] = field(default_factory=dict)
+    iterated: bool = False
+    constrained: bool = False
+    compiled: bool = False
+    other_branch: int = 0
+
+    def note(self, name: str, error: float) -> None:
+        """Keep the worst."""
+        error = float("inf") if np.isnan(error) else error
+        self.errors[name] = max(self.errors.get(name, 0.0), error)
+
+    @property
+    def wrong(self) -> dict[str, float]:
+        """Quantities that are not right."""
+        return {name: error for name, error in self.errors.items() if not error < TOLERANCE}
+
+
+def judge(
+    manipulator: Manipulator,
+    rng: np.random.Generator,
+    *,
+    states: int = 2,
+    with_c: bool = False,
+) -> Verdict:
+    """Derive a mechanism, generate its code, and compare it at random states near home."""
+    verdict = Verdict()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            manipulator = checked(manipulator)
+            bundle = compile_bundle(manipulator)
+        except SpecError as error:
+            verdict.refused = f"{error.problem}; expected {error.expected}"
+            return verdict
+    module = _module(bundle)
+    try:
+        drawn = [random_state(manipulator, rng, 0.7) for _ in range(states)]
+    except OracleError:
+        verdict.stateless = True
+        home = np.array(manipulator.home.X), np.array(manipulator.home.q)
+        drawn = [_at_home(manipulator, rng, *home)]
+    verdict.iterated = any(not info.is_closed for info in bundle.derivation.leg_types)
+    verdict.constrained = module.NC > 0
+    for state in drawn:
+        _Comparison(manipulator, module, verdict, state, rng).run()
+    if with_c and not verdict.iterated:
+        _judge_c(bundle, module, verdict, drawn)
+    return verdict
+
+
+def _module(bundle: Bundle) -> Any:
+    source = NumpyBackend().emit(bundle)[f"{bundle.name}.py"]
+    made = ModuleType(bundle.name)
+    exec(compile(source, f"<{bundle.name}.py>", "exec"), made.__dict__)
+    return made
+
+
+def _at_home(manipulator: Manipulator, rng: np.random.Generator, X: Array, q: Array) -> State:
+    """An admissible motion at home."""
+    nv = project_size(manipulator, X)
+    V, A = rng.uniform(-1.0, 1.0, nv), rng.uniform(-5.0, 5.0, nv)
+    first = project(manipulator, X, q, V)
+    V = V - np.linalg.pinv(first.Hk.T) @ (first.Hk.T @ V)
+    moving = project(manipulator, X, q, V)
+    A = A - np.linalg.pinv(moving.Hk.T) @ (moving.Hk.T @ A + moving.constraint_bias)
+    wrench = rng.uniform(-20.0, 20.0, nv - len(extra_indices(manipulator)))
+    return State(X, q, V, complete(manipulator, X, q, V, A, wrench), wrench)
+
+
+def project_size(manipulator: Manipulator, X: Array) -> int:
+    """Length of V at coordinates X: a quaternion has one entry more."""
+    return int(X.size) - (manipulator.space.value in ("spatial", "spherical"))
+
+
+class _Comparison:
+    """One state of one mechanism."""
+
+    def __init__(
+        self,
+        manipulator: Manipulator,
+        module: Any,
+        verdict: Verdict,
+        state: State,
+        rng: np.random.Generator,
+    ) -> None:
+        self.manipulator, self.module, self.verdict, self.state = (
+            manipulator,
+            module,
+            verdict,
+            state,
+        )
+        self.ours: Result = project(manipulator, *state)
+        guess = state.q + rng.uniform(-GUESS, GUESS, state.q.size)
+        self.guess = {"q0": guess} if verdict.iterated else {}
+        self.rng = rng
+
+    def run(self) -> None:
+        """Compare every function."""
+        m, s, ours, guess = self.module, self.state, self.ours, self.guess
+        note = self.note
+        note("q", self._turned(m.inverse_kinematics(s.X, **guess)), s.q)
+        if self.verdict.iterated:
+            default = self._turned(m.inverse_kinematics(s.X))
+            self.verdict.other_branch += bool(relative_error(default, s.q) > TOLERANCE)
+        note("rates", m.joint_rates(s.X, s.V, **guess), ours.qd)
+        note("accelerations", m.joint_accelerations(s.X, s.V, s.A, **guess), ours.qdd)
+        self._dynamics()
+        self._drives()
+        kinetic, potential = m.energy(s.X, s.V, **guess)
+        note("energy", np.array([kinetic, potential]), np.array([ours.kinetic, ours.potential]))
+        if passive_extra_rows(self.manipulator):
+            given = np.array(s.A)
+            given[passive_extra_rows(self.manipulator)] = 0.0
+            expected = complete(self.manipulator, s.X, s.q, s.V, given)
+            note("completed A", m.complete_acceleration(s.X, s.V, given, **guess), expected)
+
+    def note(self, name: str, actual: Array, expected: Array) -> None:
+        """Keep the error of a quantity; a wrong shape is an infinite one."""
+        same = np.shape(actual) == np.shape(expected)
+        self.verdict.note(name, relative_error(actual, expected) if same else np.inf)
+
+    def _turned(self, q: Array) -> Array:
+        """Displacements with turns counted as those of the state."""
+        joints = [joint for leg in self.manipulator.legs for joint in leg.joints]
+        turning = np.array([joint.kind is not JointKind.PRISMATIC for joint in joints])
+        revolute = np.array([joint.kind is JointKind.REVOLUTE for joint in joints])
+        result = np.array(q)
+        whole = np.round((result - self.state.q) / (2 * np.pi)) * 2 * np.pi
+        # Helical joints are not taken modulo a turn: it would move them along.
+        return np.where(turning & revolute, result - whole, result)
+
+    def _dynamics(self) -> None:
+        m, s, ours, guess = self.module, self.state, self.ours, self.guess
+        M, Z, H = m.dynamics(s.X, s.V, **guess)
+        self.note("M, Z, H alone", np.hstack([m.M(s.X, **guess).ravel(), m.Z(s.X, s.V, **guess),
+                  m.H(s.X, **guess).ravel()]), np.hstack([M.ravel(), Z, H.ravel()]))  # fmt: skip
+        if not m.NC:
+            self.note("constraints", np.zeros(ours.Hk.shape[1]), np.zeros(0))
+            for name, mine, theirs in (("M", M, ours.M), ("Z", Z, ours.Z), ("H", H, ours.H)):
+                self.note(name, mine, theirs)
+            return
+        N, c = admissible(ours)
+        self.note("M", N.T @ M @ N, N.T @ ours.M @ N)
+        bias = N.T @ (ours.M @ c + ours.Z)
+        scale = np.abs(N.T @ ours.M @ c).max() + np.abs(N.T @ ours.Z).max()
+        self.verdict.note("Z", float(np.abs(N.T @ (M @ c + Z) - bias).max() / scale))
+        self.note("H", N.T @ H, N.T @ ours.H)
+        Hk = m.Hk(s.X, **guess)
+        self.verdict.note("Hk", float("inf") if Hk.shape != ours.Hk.shape else _span(Hk, ours.Hk))
+        gap = np.abs(m.constraints(s.X, **guess)).max()
+        self.verdict.note("constraints", float(gap))
+        left = Hk.T @ s.A + m.constraint_bias(s.X, s.V, **guess)
+        size = 1.0 + np.abs(ours.constraint_bias).max(initial=0.0) + np.abs(s.A).max()
+        self.verdict.note("constraint bias", float(np.abs(left).max() / size))
+
+    def _drives(self) -> None:
+        """Inverse and forward dynamics, reactions: where the drives determine them."""
+        m, s, ours, guess = self.module, self.state, self.ours, self.guess
+        motion = m.forward_dynamics(s.X, s.V, ours.tau, wrench=s.wrench, **guess)
+        expected = _forward(self.manipulator, ours, s)
+        self.note("forward", motion[0] if m.NC else motion, expected)
+        if not _determined(self.manipulator, ours):
+            found = m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench, **guess)
+            found = found[0] if m.NC else found
+            # Too few drives: no forces give any A; the answer has to say so.
+            self.verdict.note("tau of too few drives", 0.0 if np.isnan(found).all() else np.inf)
+            return
+        found = m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench, **guess)
+        self.note("tau", found[0] if m.NC else found, ours.tau)
+        mine = m.leg_reactions(s.X, s.V, s.A, wrench=s.wrench, **guess)
+        theirs = np.array([leg.reaction for leg in ours.legs])
+        self.note("reactions", mine, theirs[:, : mine.shape[-1]])
+
+
+def _span(mine: Array, theirs: Array) -> float:
+    """How far two sets of unit columns are from spanning the same, in unit amounts."""
+    match = np.linalg.lstsq(theirs, mine, rcond=None)[0]
+    return relative_error(theirs @ match, mine)
+
+
+def _determined(manipulator: Manipulator, state: Result) -> bool:
+    """Whether drives and constraints reach every direction."""
+    passive = passive_extra_rows(manipulator)
+    rows = [row for row in range(state.Z.size) if row not in passive]
+    drives = np.hstack([state.H, state.Hk])[rows]
+    values = np.linalg.svd(drives, compute_uv=False)
+    return len(values) == len(rows) and bool(values[-1] > RANK_TOLERANCE * values[0])
+
+
+def _forward(manipulator: Manipulator, ours: Result, state: State) -> Array:
+    """A under the oracle's tau: from reduced equations, without multipliers."""
+    N, c = admissible(ours)
+    load = np.zeros_like(ours.Z)
+    load[: state.wrench.size] = state.wrench
+    force = N.T @ (ours.H @ ours.tau + load - ours.Z - ours.M @ c)
+    return np.asarray(c + N @ np.linalg.solve(N.T @ ours.M @ N, force))
+
+
+_C_FUNCTIONS: dict[str, Callable[[Any, State, Array], Any]] = {
+    "inverse_kinematics": lambda m, s, tau: m.inverse_kinematics(s.X),
+    "joint_rates": lambda m, s, tau: m.joint_rates(s.X, s.V),
+    "joint_accelerations": lambda m, s, tau: m.joint_accelerations(s.X, s.V, s.A),
+    "M": lambda m, s, tau: m.M(s.X),
+    "Z": lambda m, s, tau: m.Z(s.X, s.V),
+    "H": lambda m, s, tau: m.H(s.X),
+    "inverse_dynamics": lambda m, s, tau: m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench),
+    "forward_dynamics": lambda m, s, tau: m.forward_dynamics(s.X, s.V, tau, wrench=s.wrench),
+    "leg_reactions": lambda m, s, tau: m.leg_reactions(s.X, s.V, s.A, wrench=s.wrench),
+    "energy": lambda m, s, tau: m.energy(s.X, s.V),
+    "Hk": lambda m, s, tau: m.Hk(s.X),
+    "constraint_bias": lambda m, s, tau: m.constraint_bias(s.X, s.V),
+}
+
+
+def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State]) -> None:
+    """The generated C against the generated NumPy."""
+    with tempfile.TemporaryDirectory() as folder:
+        library = CLibrary(bundle, Path(folder), flags=("-O1",))
+        for state in states:
+            tau = np.random.default_rng(1).uniform(-20.0, 20.0, module.NU)
+            arguments = {**state._asdict(), "tau": tau, "q0": state.q}
+            for name, call in _C_FUNCTIONS.items():
+                if name not in library.api:
+                    continue
+                expected = call(module, state, tau)
+                inputs = [arguments[argument.name] for argument in library.api[name].inputs]
+                outputs, _ = library.single(name, *inputs)
+                parts = expected if isinstance(expected, tuple) else (expected,)
+                for mine, theirs in zip(outputs, parts, strict=True):
+                    theirs = np.ravel(theirs)
+                    if np.isnan(theirs).all() and np.isnan(mine).all():
+                        continue
+                    verdict.note(f"C {name}", relative_error(mine, theirs))
+    verdict.compiled = True
