@@ -207,6 +207,8 @@ class LatexPrinter:
     def _scaled(self, factor: Any, of: Any) -> Term:
         """A scalar product, or a scalar times a vector or tensor (`of`)."""
         factor = sp.sympify(factor)
+        if isinstance(of, n.VectorAdd | n.TensorAdd) and all(t.negative for t in self.terms(of)):
+            factor, of = -factor, -of
         number, numerator, denominator = _split(factor)
         negative = bool(number < 0)
         number = abs(number)
@@ -268,10 +270,10 @@ class LatexPrinter:
             arguments = r",\,".join(self.doprint(arg) for arg in base.args)
             text = f"{_FUNCTIONS[base.func]}{brackets(arguments)}"
         else:
-            terms = self.terms(base)
-            alone = len(terms) == 1 and terms[0].level >= PRODUCT and not terms[0].negative
-            text = terms[0].text if alone else brackets(join_terms(terms))
-        return text if exponent == 1 else f"{brackets(text)}^{{{exponent}}}"
+            text = self.factor(base)
+        if exponent == 1:
+            return text
+        return f"{brackets(unbracketed(text))}^{braced(str(exponent))}"
 
 
 _FUNCTIONS: dict[Any, str] = {

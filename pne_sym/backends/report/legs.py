@@ -36,7 +36,7 @@ def _leg(bundle: Bundle, info: LegTypeInfo, printer: LatexPrinter) -> LegView:
         ),
         tuple(_closing(bundle, info)),
         tuple(_solved(info)),
-        table(_GIVEN, _given_rows(derivation, info.name, printer)),
+        table(_GIVEN, dict.fromkeys(_given_rows(derivation, info.name, printer))),
         parameter_table(derivation, info.name),
         f"`legs[i]` with i = {ranges(info.indices)}, counted from 0",
     )
@@ -132,7 +132,8 @@ def _signs(info: LegTypeInfo, signs: Sequence[int]) -> str:
 def _solved(info: LegTypeInfo) -> Iterator[str]:
     reasons = dict(info.reasons)
     for j, method in enumerate(info.methods, 1):
-        words = METHODS.get(method, method).format(j=j, reason=reasons.get(j, ""))
+        reason = f": {reasons[j]}" if reasons.get(j) else ", together with the others"
+        words = METHODS.get(method, method).format(j=j, reason=reason)
         yield f"Joint {j}: {words}."
 
 

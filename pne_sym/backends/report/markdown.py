@@ -42,7 +42,11 @@ def unit(text: str) -> str:
     'kg·m²'
     """
     text = _QUOTIENTS.get(text, text).replace(" ", "·")
-    return text.replace("^2", "²").replace("^3", "³") if text not in ("", "-") else "1"
+    return (
+        text.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
+        if text not in ("", "-")
+        else "1"
+    )
 
 
 _QUOTIENTS = {  # coefficient of an acceleration: unit of the quantity over m/s^2

@@ -29,7 +29,8 @@ LAWS: dict[Law, str] = {
 MARKS: tuple[tuple[str, str], ...] = (
     (r"\mathbf a,\ \mathbf T,\ a", "vector, tensor (both bold), scalar"),
     (r"\dot{\mathbf a},\ \ddot{\mathbf a}", "first and second derivative with respect to time"),
-    (r"\mathbf a\cdot\mathbf b,\ \mathbf a\times\mathbf b", "scalar and cross product"),
+    (r"\mathbf a\cdot\mathbf b", "scalar product"),
+    (r"\mathbf a\times\mathbf b", "cross product"),
     (r"\lVert\mathbf a\rVert", "length of a vector"),
     (
         r"\tilde{\mathbf a}",
@@ -102,8 +103,10 @@ METHODS: dict[str, str] = {
     "the connection point is fixed; that is one equation for this joint alone",
     "direct": "closed form. No joint is left beyond it: read off the vector to the connection "
     "point",
+    "orientation": "closed form. Its turning does not move the connection point; it shows in the "
+    "right angle that the platform joint keeps between its two axes",
     "given": "nothing to solve: the displacement is an extra coordinate, an entry of X",
-    "numeric": "no closed form, found by iteration: {reason}",
+    "numeric": "no closed form, found by iteration on the leg's loop closure{reason}",
 }
 
 JOINTS = {
