@@ -92,8 +92,8 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         lines.append(f"**Out of reach**: {ids} negative, a leg does not get to its place.")
     if singular:
         lines.append(
-            f"**Singular leg**: a divisor of {_links(singular)} (nearly) zero, measured against the "
-            "size of the leg."
+            f"**Singular leg**: a divisor of {_links(singular)} (nearly) zero, measured against "
+            "the size of the leg."
         )
     lines += [
         "**Singular drives**: H has no full rank; inverse dynamics needs that, M, Z and H do not.",
