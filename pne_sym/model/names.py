@@ -53,9 +53,7 @@ def read_name(entry: Entry) -> str:
     """
     name = entry.text()
     if len(name) > LONGEST or not _GRAMMAR.fullmatch(name):
-        raise entry.fault(
-            f"{_EXPECTED}; at most {LONGEST} characters"
-        )
+        raise entry.fault(f"{_EXPECTED}; at most {LONGEST} characters")
     reason = _reserved_as(name)
     if reason:
         raise entry.fault(f"another name: '{name}' is {reason}")
@@ -78,7 +76,9 @@ def read_type_name(entry: Entry, name: str) -> str:
 
 def reserved() -> list[str]:
     """Reserved words that do not depend on the version of Python, in alphabetical order."""
-    return sorted({*_COMMANDS.split(), *_C_AND_CPP.split(), *_C_HEADERS.split(), *_POSIX_HEADERS.split()})
+    return sorted(
+        {*_COMMANDS.split(), *_C_AND_CPP.split(), *_C_HEADERS.split(), *_POSIX_HEADERS.split()}
+    )
 
 
 def _reserved_as(name: str) -> str:
