@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Sequence
 
-from pne_sym.cli.arguments import arrange, unavailable
+from pne_sym.cli.arguments import arrange
 
 
 def main(argv: Sequence[str] | None = None) -> None:
@@ -21,13 +21,9 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         from pne_sym.cli.app import app
-        from pne_sym.cli.console import prepare_streams, print_error
+        from pne_sym.cli.console import prepare_streams
 
         prepare_streams()
-        word = unavailable(arguments)
-        if word is not None:
-            print_error(f"{word!r} is not available in this version of pne-gen")
-            sys.exit(2)
         app(arrange(arguments), prog_name="pne-gen")
     except KeyboardInterrupt:
         sys.stderr.write("pne-gen: interrupted\n")

@@ -78,10 +78,11 @@ Examples:
   pne-gen list                             what the catalogue has
   pne-gen draw stewart --out stewart.svg   a picture of it at home
   pne-gen explain stewart ups-K5           an equation: law, uses, users, code
+  pne-gen diff HEAD:my_robot.toml my_robot.toml   what a change means
 
 \b
 Exit codes:
-  0 done, 1 check found a difference, 2 the input is at fault,
+  0 done, 1 check or diff found a difference, 2 the input is at fault,
   3 internal error, 130 interrupted
 """
 
@@ -182,6 +183,7 @@ def check(
 
 app.command("new")(starter.new)
 app.command("explain")(review.explain)
+app.command("diff")(review.diff)
 app.command("draw")(drawing.draw)
 
 

@@ -11,9 +11,8 @@ from collections.abc import Sequence
 GENERATE = "NAME_OR_SPEC..."
 """Name of the command that is meant where a model stands; no model can have it."""
 
-COMMANDS = ("list", "all", "check", "explain", "new", "draw")
-NOT_YET = ("diff",)
-OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage", "--legs", "--space")
+COMMANDS = ("list", "all", "check", "explain", "diff", "new", "draw")
+OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage", "--tolerance", "--legs", "--space")
 _OF_THE_PROGRAM = ("--help", "-h", "--version")
 
 
@@ -32,14 +31,6 @@ def arrange(arguments: Sequence[str]) -> list[str]:
         rest = [*arguments[:position], *arguments[position + 1 :]]
         return [arguments[position], *rest]
     return [GENERATE, *arguments]
-
-
-def unavailable(arguments: Sequence[str]) -> str | None:
-    """Return the reserved word asked for that this version has no command for."""
-    position = _first_word(arguments)
-    if position is not None and arguments[position] in NOT_YET:
-        return arguments[position]
-    return None
 
 
 def _first_word(arguments: Sequence[str]) -> int | None:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from pne_sym.cli.console import Report
-from pne_sym.cli.faults import told
+from pne_sym.cli.faults import DIFFERENT, told
 from pne_sym.cli.options import Debug
 
 
@@ -78,3 +78,57 @@ def explain(
                 report.line(line)
         except (UnknownEquationError, NotGeneratedError) as error:
             raise InputError(str(error)) from error
+
+
+_VERSION = (
+    "A name in the catalogue, a spec file, a generated folder, or REVISION:PATH of one in git, "
+    "such as HEAD~1:robots/my_robot.toml or main:generated/stewart."
+)
+
+
+def diff(
+    before: Annotated[str, typer.Argument(metavar="A", help=_VERSION)],
+    after: Annotated[str, typer.Argument(metavar="B", help="Likewise.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Answer in JSON.")] = False,
+    as_markdown: Annotated[
+        bool, typer.Option("--markdown", help="Answer in Markdown, for a pull request.")
+    ] = False,
+    tolerance: Annotated[
+        float,
+        typer.Option("--tolerance", min=0.0, help="Relative; values nearer than this are equal."),
+    ] = 1e-9,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Tell only by exit code.")] = False,
+    debug: Debug = False,
+) -> None:
+    """Compare two versions of a model by meaning.
+
+    Function by function and equation by equation: identical text, different text with
+    equal values, or different values, and where first along the derivation; what changed
+    in parameters, coordinates and operation counts. Values are compared at random
+    parameters and states. Exit code 0: equal values and interface. 1: different.
+
+    A specification is compiled by this version of pne-gen. The NumPy module of a
+    generated folder named here is executed, in a process of its own with a time limit:
+    name only folders that you would import.
+    """
+    with told(debug=debug):
+        from pne_sym.generation import InputError
+        from pne_sym.review import diff_text
+        from pne_sym.review.compare import compare
+        from pne_sym.review.execution import ExecutionError
+        from pne_sym.review.versions import find_version
+
+        if as_json and as_markdown:
+            raise InputError("--json and --markdown exclude each other")
+        try:
+            found = compare(find_version(before), find_version(after), tolerance=tolerance)
+        except ExecutionError as error:
+            raise InputError(str(error)) from error
+        if as_json:
+            lines = iter([diff_text.as_json(found)])
+        else:
+            lines = diff_text.as_markdown(found) if as_markdown else diff_text.as_text(found)
+        for line in () if quiet else lines:
+            Report().difference(line)
+        if not found.equal:
+            raise typer.Exit(DIFFERENT)

@@ -33,12 +33,6 @@ def test_unknown_second_model_leaves_nothing_written(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize("word", ["diff", "draw"])
-def test_reserved_words_without_a_command_yet(word: str) -> None:
-    assert_refused(pne_gen(word, "stewart"), f"'{word}' is not available in this version")
-    assert not re.search(rf"^  {word}\b", pne_gen("--help").stdout, re.MULTILINE)
-
-
 def test_missing_spec_file(tmp_path: Path) -> None:
     assert_refused(pne_gen("no_such.toml", cwd=tmp_path), "no_such.toml: no such file")
     assert tree(tmp_path) == {}

@@ -1,0 +1,175 @@
+"""What a comparison of two versions of a model finds: plain data."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from typing import Any
+
+
+class Verdict(enum.StrEnum):
+    """How something compares."""
+
+    IDENTICAL = "identical text"
+    EQUAL = "different text, equal values"
+    DIFFERENT = "different values"
+    FOLLOWS = "follows from an equation before"
+    CHANGED = "different text"
+    ADDED = "added"
+    REMOVED = "removed"
+
+
+@dataclass(frozen=True)
+class Gap:
+    """The largest relative difference of a quantity.
+
+    Attributes:
+        size: |after - before| over the largest entry at any of the states; infinite
+            where only one of the two has a value, or the shapes differ.
+        where: entry, and leg where every leg has its own, such as "[2] of leg 1".
+        before: value there.
+        after: value there.
+    """
+
+    size: float
+    where: str
+    before: float
+    after: float
+
+
+@dataclass(frozen=True)
+class BlockDifference:
+    """A function of the generated code: M, Z, H, inverse kinematics ..."""
+
+    name: str
+    verdict: Verdict
+    gap: Gap | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class EquationDifference:
+    """One equation.
+
+    Attributes:
+        id: before, or after where it is new.
+        name: of the quantity (of a report without its derivation: its LaTeX).
+        title: in words.
+        leg_type: of its chapter; empty for the platform.
+        verdict: how it compares, given equal values of what it uses.
+        before, after: formulas; empty where there is none.
+        gap: largest relative difference, given equal values of what it uses.
+        note: new id or name, changed law or conditions, the form that differs.
+    """
+
+    id: str
+    name: str
+    title: str
+    leg_type: str
+    verdict: Verdict
+    before: str = ""
+    after: str = ""
+    gap: Gap | None = None
+    note: str = ""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A parameter, coordinate or other part of the interface that changed.
+
+    Attributes:
+        kind: "added", "removed", "renamed" or "changed".
+        what: "parameter gravity", "coordinates X" ...
+        before, after: as text.
+    """
+
+    kind: str
+    what: str
+    before: str = ""
+    after: str = ""
+
+
+@dataclass(frozen=True)
+class OperationChange:
+    """Operation counts of a function: mul, add, div, sqrt, trig."""
+
+    function: str
+    before: tuple[int, ...]
+    after: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Two versions of a model compared.
+
+    Attributes:
+        before, after: what was compared.
+        tolerance: relative; values nearer than this are equal.
+        samples: (parameter sets, states in all) at which values were compared.
+        blocks: functions of the generated code.
+        equations: all equations in order of derivation, identical ones too.
+        interface: parameters, coordinates and defaults that changed.
+        operations: counts that changed.
+        notes: what limits the comparison.
+    """
+
+    before: str
+    after: str
+    tolerance: float
+    samples: tuple[int, int]
+    blocks: tuple[BlockDifference, ...]
+    equations: tuple[EquationDifference, ...]
+    interface: tuple[Change, ...]
+    operations: tuple[OperationChange, ...]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def equal(self) -> bool:
+        """Whether values and interface are the same; texts need not be."""
+        bad = (Verdict.DIFFERENT, Verdict.ADDED, Verdict.REMOVED)
+        return (
+            not self.interface
+            and not any(b.verdict in bad for b in self.blocks)
+            and not any(e.verdict is Verdict.DIFFERENT for e in self.equations)
+        )
+
+    @property
+    def origins(self) -> tuple[EquationDifference, ...]:
+        """Equations that differ though what they use is equal; the first comes first."""
+        return tuple(e for e in self.equations if e.verdict is Verdict.DIFFERENT)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data for JSON; equations of identical text are counted, not listed."""
+        listed = [e for e in self.equations if e.verdict is not Verdict.IDENTICAL]
+        return {
+            "before": self.before,
+            "after": self.after,
+            "equal": self.equal,
+            "tolerance": self.tolerance,
+            "samples": {"parameter_sets": self.samples[0], "states": self.samples[1]},
+            "blocks": [_plain(b) for b in self.blocks],
+            "first_difference": self.origins[0].id if self.origins else None,
+            "identical_equations": len(self.equations) - len(listed),
+            "equations": [_plain(e) for e in listed],
+            "interface": [_plain(c) for c in self.interface],
+            "operations": [
+                {"function": o.function, "before": list(o.before), "after": list(o.after)}
+                for o in self.operations
+            ],
+            "notes": list(self.notes),
+        }
+
+
+def _plain(item: Any) -> dict[str, Any]:
+    """A dataclass as plain data, without what is empty; infinity as a text."""
+    found: dict[str, Any] = {}
+    for name, value in vars(item).items():
+        if isinstance(value, Gap):
+            found[name] = {k: _number(v) for k, v in vars(value).items()}
+        elif value not in ("", None):
+            found[name] = str(value) if isinstance(value, enum.Enum) else value
+    return found
+
+
+def _number(value: Any) -> Any:
+    return str(value) if isinstance(value, float) and not abs(value) < float("inf") else value

@@ -1,0 +1,293 @@
+"""Numbers for every quantity of a derivation, straight from its equations.
+
+All vectors and tensors have components in base axes. Only the derivation is
+used, not the lowering: what is compared is what the report says.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+import sympy as sp
+
+from pne_sym.derivation import Derivation, Equation, Frame, Given, names_in
+from pne_sym.lowering.inputs import leg_inputs, unpack
+from pne_sym.vector import (
+    Dot,
+    LegSum,
+    PlaneCross,
+    TensorLegSum,
+    TensorSymbol,
+    VectorLegSum,
+    VectorSymbol,
+)
+from pne_sym.vector.evaluate import evaluate
+
+_SUMS = (LegSum, VectorLegSum, TensorLegSum)
+Borrow = Callable[[str, int | None], Any]
+
+
+class Structure:
+    """Who is who in a derivation: definitions, given quantities, values per leg."""
+
+    def __init__(self, derivation: Derivation) -> None:
+        self.derivation = derivation
+        self.equations: dict[str, Equation] = {e.name: e for e in derivation.equations()}
+        self.givens: dict[str, Given] = {str(g.symbol.name): g for g in derivation.givens}
+        self.frames: dict[str, Frame] = {f.name: f for f in derivation.frames}
+        self.legs = {t.name: t.indices for t in derivation.leg_types}
+        self.type_of_leg = {leg: t.name for t in derivation.leg_types for leg in t.indices}
+        self.leg_type = self._leg_types()
+
+    def _leg_types(self) -> dict[str, str]:
+        """Name -> leg type, for quantities of which every leg of the type has its own."""
+        table = self.derivation.parameters
+        found = {n: f.leg_type for n, (f, _) in table.entries.items() if f.leg_type}
+        found |= {n: leg_type for n, (leg_type, _) in table.branches.items()}
+        for name, given in self.givens.items():
+            used = {n for c in given.components for n in names_in(c)}
+            prefix = given.frame.partition(".")[0]
+            types = {prefix} & self.legs.keys() | {found[n] for n in used if n in found}
+            if types:
+                found[name] = min(types)
+        for chapter in self.derivation.chapters:
+            for equation in chapter.equations:
+                used = names_outside_sums(equation.rhs)
+                owners = [found[n] for n in sorted(used) if n in found]
+                if chapter.leg_type or owners:
+                    found[equation.name] = chapter.leg_type or owners[0]
+        return found
+
+    def legs_of(self, name: str) -> tuple[int | None, ...]:
+        """The legs that have a value of this name; (None,) where there is one in all."""
+        return self.legs[self.leg_type[name]] if name in self.leg_type else (None,)
+
+
+def names_outside_sums(expr: Any) -> set[str]:
+    """Names in an expression that do not stand within a sum over legs."""
+    if isinstance(expr, _SUMS):
+        return set()
+    if hasattr(expr, "name") or not getattr(expr, "args", ()):
+        return names_in(expr)
+    return {name for arg in expr.args for name in names_outside_sums(arg)}
+
+
+class State:
+    """A derivation's quantities at one set of parameters and one state.
+
+    Args:
+        structure: of the derivation.
+        parameters: by field name.
+        vectors: X, V, A.
+        borrow: values to use instead of the derivation's own, or None where there is none.
+    """
+
+    def __init__(
+        self,
+        structure: Structure,
+        parameters: Mapping[str, Any],
+        vectors: Mapping[str, Any],
+        borrow: Borrow | None = None,
+    ) -> None:
+        self.structure = structure
+        self.parameters = parameters
+        self.vectors = vectors
+        self.borrow = borrow
+        self._values: dict[tuple[str, int | None], Any] = {}
+        self._parts: dict[str, Any] = {}
+        self._rotations: dict[tuple[str, int | None], Any] = {}
+        self._inputs = _inputs(structure.derivation, vectors)
+
+    def value(self, name: str, leg: int | None) -> Any:
+        """Value of a name; of its leg where every leg has its own."""
+        if name in self._parts:
+            return self._parts[name]
+        known = name in self.structure.leg_type or name in self.structure.equations
+        key = (name, leg if name in self.structure.leg_type or not known else None)
+        if key not in self._values:
+            lent = self.borrow(*key) if self.borrow else None
+            self._values[key] = self.own(*key) if lent is None else lent
+        return self._values[key]
+
+    def own(self, name: str, leg: int | None) -> Any:
+        """Value of a name by the derivation's own definition."""
+        structure = self.structure
+        if name in structure.equations:
+            return self.of(structure.equations[name].rhs, leg)
+        if name in structure.givens:
+            given = structure.givens[name]
+            if given.components == (given.symbol,):
+                return self._scalar(name, leg)
+            raw = self._components(given, leg)
+            if raw.ndim == 0:
+                return float(raw)
+            return self._raised(raw, given.frame, "base", leg)
+        return self._scalar(name, leg)
+
+    def of(self, expr: Any, leg: int | None) -> Any:
+        """Value of an expression; sums run over the legs."""
+        expr = self._reduced(expr, leg)
+        return evaluate(expr, _Lookup(lambda name: self.value(name, leg)))
+
+    def rotation(self, frame: str, leg: int | None) -> Any:
+        """base_R_frame."""
+        key = (frame, leg)
+        if key not in self._rotations:
+            self._rotations[key] = self._rotation(self.structure.frames[frame], leg)
+        return self._rotations[key]
+
+    def _rotation(self, frame: Frame, leg: int | None) -> Any:
+        if frame.parent is None:
+            return np.eye(3)
+        if frame.axes is not None:
+            return np.column_stack([self.of(axis, leg) for axis in frame.axes])
+        return self.rotation(frame.parent, leg) @ self._step(frame, leg)
+
+    def _step(self, frame: Frame, leg: int | None) -> Any:
+        """parent_R_frame of a frame that is not given by its axes."""
+        if frame.angle is not None:
+            c, s = (self.of(v, leg) for v in frame.angle)
+            return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+        if frame.rows is not None:
+            return np.array([self._in_frame(row, frame.name, leg) for row in frame.rows])
+        assert frame.rotation is not None
+        entries = [self.of(sp.sympify(entry), leg) for entry in frame.rotation]
+        return np.array(entries, dtype=float).reshape(3, 3)
+
+    def _raised(self, value: Any, name: str, to: str, leg: int | None) -> Any:
+        """Components of a vector or tensor in an ancestor of its frame.
+
+        A vector along a joint's axis is known before the joint's angle.
+        """
+        while name != to:
+            frame = self.structure.frames[name]
+            assert frame.parent is not None
+            if frame.axes is not None:
+                step = self.rotation(frame.parent, leg).T @ self.rotation(name, leg)
+                value = step @ value if value.ndim == 1 else step @ value @ step.T
+            elif value.ndim == 2:
+                step = self._step(frame, leg)
+                value = step @ value @ step.T
+            elif frame.angle is None or value[:2].any():
+                value = self._step(frame, leg) @ value
+            name = frame.parent
+        return value
+
+    def _in_frame(self, expr: Any, frame: str, leg: int | None) -> Any:
+        """Value of a vector that is known in a frame, components in that frame."""
+
+        def look(name: str) -> Any:
+            given = self.structure.givens.get(name)
+            if given is not None and given.frame == frame:
+                return self._components(given, leg)
+            if name in self.structure.equations:
+                return self._in_frame(self.structure.equations[name].rhs, frame, leg)
+            return self.value(name, leg)
+
+        return evaluate(expr, _Lookup(look))
+
+    def _components(self, given: Given, leg: int | None) -> Any:
+        values = [self.of(sp.sympify(c), leg) for c in given.components]
+        shape: tuple[int, ...] = {1: (), 3: (3,), 9: (3, 3)}[len(values)]
+        return np.array(values, dtype=float).reshape(shape)
+
+    def _scalar(self, name: str, leg: int | None) -> float:
+        """An entry of a parameter, a branch's sign, or an entry of X, V, A."""
+        derivation = self.structure.derivation
+        table = derivation.parameters
+        if name in table.entries:
+            field, index = table.entries[name]
+            value = np.asarray(self.parameters[field.name], dtype=float)
+            if field.leg_type:
+                value = value[self.structure.legs[field.leg_type].index(leg)]
+            return float(value.reshape(-1)[index])
+        if name in table.branches:
+            leg_type, signs = table.branches[name]
+            return float(signs[self.structure.legs[leg_type].index(leg)])
+        if name in self._inputs:
+            return self._inputs[name]
+        if leg is None:
+            raise KeyError(name)
+        leg_type = self.structure.type_of_leg[leg]
+        vector, indices = leg_inputs(derivation, name, leg_type)
+        return float(self.vectors[vector][indices[self.structure.legs[leg_type].index(leg)]])
+
+    def _reduced(self, expr: Any, leg: int | None) -> Any:
+        """The expression with sums over legs, and products of given vectors, as symbols.
+
+        A product of vectors given in links is formed in their common frame: it may be
+        needed to find the angle by which they are turned.
+        """
+        if isinstance(expr, _SUMS):
+            value, leg_type = expr.args
+            legs = self.structure.legs[str(leg_type)]
+            return self._named(expr, sum(self.of(value, each) for each in legs))
+        args = getattr(expr, "args", ())
+        if hasattr(expr, "name") or not args:
+            return expr
+        if isinstance(expr, Dot | PlaneCross):
+            givens = [self.structure.givens.get(name) for name in sorted(names_in(expr))]
+            if all(given is not None and len(given.components) > 1 for given in givens):
+                return self._named(expr, self._product([g for g in givens if g], expr, leg))
+        reduced = tuple(self._reduced(arg, leg) for arg in args)
+        return expr if reduced == args else expr.func(*reduced)
+
+    def _product(self, givens: list[Given], expr: Any, leg: int | None) -> Any:
+        """A product of given vectors, components in the frame that they have in common."""
+        chains = [self._ancestors(given.frame) for given in givens]
+        common = next(f for f in chains[0] if all(f in chain for chain in chains))
+        values = {
+            str(g.symbol.name): self._raised(self._components(g, leg), g.frame, common, leg)
+            for g in givens
+        }
+        return evaluate(expr, values)
+
+    def _ancestors(self, frame: str | None) -> list[str]:
+        chain = []
+        while frame is not None:
+            chain.append(frame)
+            frame = self.structure.frames[frame].parent
+        return chain
+
+    def _named(self, expr: Any, value: Any) -> Any:
+        """A symbol with a value of its own."""
+        name = f"part {len(self._parts)}"
+        self._parts[name] = value
+        return _symbol_like(expr, name)
+
+
+class _Lookup(Mapping[str, Any]):
+    """A mapping whose values are found when they are asked for."""
+
+    def __init__(self, find: Callable[[str], Any]) -> None:
+        self._find = find
+
+    def __getitem__(self, name: str) -> Any:
+        return self._find(name)
+
+    def __iter__(self) -> Any:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
+
+
+def _symbol_like(expr: Any, name: str) -> Any:
+    if isinstance(expr, VectorLegSum):
+        return VectorSymbol(name)
+    return TensorSymbol(name) if isinstance(expr, TensorLegSum) else sp.Symbol(name, real=True)
+
+
+def _inputs(derivation: Derivation, vectors: Mapping[str, Any]) -> dict[str, float]:
+    """Scalars that the derivation names in X, V and A."""
+    assert derivation.coordinates is not None
+    values = {f"{v}_{k}": float(e) for v, entries in vectors.items() for k, e in enumerate(entries)}
+    for assignments, _ in unpack(derivation.coordinates).values():
+        for a in assignments:
+            values[str(a.target)] = float(evaluate(sp.sympify(a.expr), values))
+    for stem in ("t", "t_dot", "t_ddot", "omega", "alpha"):
+        for axis in "xyz":
+            values.setdefault(f"{stem}_{axis}", 0.0)
+    return values

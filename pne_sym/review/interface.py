@@ -1,0 +1,107 @@
+"""What users of a model see of a change: parameters, defaults, coordinates, leg types."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from pne_sym.review.difference import Change, OperationChange
+from pne_sym.review.model import Model, paths_of
+
+_COUNTS = ("mul", "add", "div", "sqrt", "trig")
+_PLAIN = ("space", "sizes", "joints", "actuators", "extra", "constraints", "home")
+
+
+def interface_changes(
+    before: Model, after: Model, old: Mapping[str, Any], new: Mapping[str, Any]
+) -> Iterator[Change]:
+    """All changes of the interface.
+
+    Args:
+        before: a version of the model.
+        after: another.
+        old: its defaults, by path of the full form.
+        new: those of the other.
+    """
+    yield from _parameters(before, after)
+    yield from _defaults(old, new)
+    yield from _leg_types(before.manifest, after.manifest)
+    for name in ("X", "V", "wrench"):
+        a, b = (m.manifest["coordinates"][name] for m in (before, after))
+        yield from _changed(f"coordinates {name}", ", ".join(a), ", ".join(b))
+    for key in _PLAIN:
+        yield from _changed(key, str(before.manifest.get(key)), str(after.manifest.get(key)))
+
+
+def _changed(what: str, before: str, after: str) -> Iterator[Change]:
+    if before != after:
+        yield Change("changed", what, before, after)
+
+
+def _parameters(before: Model, after: Model) -> Iterator[Change]:
+    """Parameters added, removed, renamed: the same where they stand at the same paths."""
+    free = list(before.parameters)
+    for parameter in after.parameters:
+        partner = _partner(parameter, free)
+        if partner is None:
+            yield Change("added", f"parameter {parameter['name']}", after=_described(parameter))
+            continue
+        free.remove(partner)
+        if partner["name"] != parameter["name"]:
+            yield Change("renamed", "parameter", partner["name"], parameter["name"])
+        yield from _changed(
+            f"parameter {parameter['name']}", _described(partner), _described(parameter)
+        )
+    for parameter in free:
+        yield Change("removed", f"parameter {parameter['name']}", before=_described(parameter))
+
+
+def _partner(parameter: dict[str, Any], among: list[dict[str, Any]]) -> dict[str, Any] | None:
+    paths = set(paths_of(parameter))
+    shared = [p for p in among if p["path"] == parameter["path"] and paths & set(paths_of(p))]
+    named = [p for p in shared if p["name"] == parameter["name"]]
+    return next(iter(named or shared), None)
+
+
+def _described(parameter: dict[str, Any]) -> str:
+    zeros = parameter.get("zero_by_structure")
+    fixed = f", entries {zeros} zero by structure" if zeros else ""
+    return f"{parameter['unit']}, shape {parameter['shape']}{fixed}"
+
+
+def _defaults(old: Mapping[str, Any], new: Mapping[str, Any]) -> Iterator[Change]:
+    for path, value in new.items():
+        if path in old and not np.array_equal(old[path], value):
+            yield Change("changed", f"default of {path}", _text(old[path]), _text(value))
+
+
+def _text(value: Any) -> str:
+    return str(np.asarray(value).tolist())
+
+
+def _leg_types(before: dict[str, Any], after: dict[str, Any]) -> Iterator[Change]:
+    old, new = ({t["name"]: t for t in m["leg_types"]} for m in (before, after))
+    for name, info in new.items():
+        if name not in old:
+            yield Change("added", f"leg type {name}", after=_leg_type(info))
+        else:
+            yield from _changed(f"leg type {name}", _leg_type(old[name]), _leg_type(info))
+    for name in old.keys() - new.keys():
+        yield Change("removed", f"leg type {name}", before=_leg_type(old[name]))
+
+
+def _leg_type(info: dict[str, Any]) -> str:
+    legs = ", ".join(str(leg + 1) for leg in info["legs"])
+    branches = "; ".join(f"{n} {signs}" for n, signs in info["branches"].items())
+    return f"{info['architecture']}, legs {legs}" + (f"; {branches}" if branches else "")
+
+
+def operation_changes(before: Model, after: Model) -> Iterator[OperationChange]:
+    """Functions whose operation counts changed."""
+    old, new = (m.manifest["operations"] for m in (before, after))
+    for name in dict.fromkeys((*old, *new)):
+        counts = [tuple(int(o.get(name, {}).get(c, 0)) for c in _COUNTS) for o in (old, new)]
+        if counts[0] != counts[1]:
+            yield OperationChange(name, *counts)
