@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Law, Trouble
+from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import axes_at
 from pne_sym.model.closure import pose_at
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Manipulator
-from pne_sym.vector import Cross, Dot, Vector, norm, vector_sum
+from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
 
 def directions_left_out(
@@ -29,7 +29,7 @@ def directions_left_out(
     """
     axis = axis_across(g, joints)
     if planar:
-        return [_unit(book, g, "n_c", Cross(g.e[1], motion.v[joints[0]]))]
+        return [_unit(book, g, "n_c", Cross(plane_normal(book, g), motion.v[joints[0]]))]
     if missing == 1:
         if axis is not None:
             return [axis]
@@ -38,6 +38,20 @@ def directions_left_out(
     if axis is None:
         raise ValueError("a leg with a single freedom along its slide leaves out a plane")
     return [axis, _unit(book, g, "n_c", Cross(axis, motion.v[joints[0]]))]
+
+
+def plane_normal(book: Book, g: LegGeometry) -> Vector:
+    """The normal of the plane: the axis of a joint that turns, or a vector of its own."""
+    turning = [g.e[j] for j in range(1, g.count + 1) if g.turns(j)]
+    if turning:
+        return turning[0]
+    normal = VectorSymbol(g.name("n_plane"))
+    if normal.name not in book.notation:
+        meaning = "normal of the plane"
+        frame = g.frame("spec", 0)
+        quantity = Quantity(normal.name, r"\mathbf n", meaning, "-", frame, parameter=True)
+        book.give(normal, frame, (sp.S.Zero, sp.S.Zero, sp.S.One), quantity)
+    return normal
 
 
 def wrenches_left_out(

@@ -86,6 +86,9 @@ def invert(
     """
     solver = _Solver(book, g, normal, constrained=constrained)
     for j in range(1, g.count + 1):
+        if g.is_extra(j):  # known before all others, which may lie before it in the chain
+            solver._given(j, x)
+    for j in range(1, g.count + 1):
         x = solver.joint(j, x)
     return InverseKinematics(solver.q, solver.methods, solver.reasons, solver.branches, solver.x)
 
@@ -153,7 +156,7 @@ class _Solver:
         g = self.g
         self.x[j] = x
         if g.is_extra(j):
-            x = self._given(j, x)
+            pass
         elif g.is_unseen(j):
             self._orient(j)
         elif g.acts_as_slide(j) or (j in g.pitch and not self._later(j)):
@@ -222,7 +225,22 @@ class _Solver:
                 continue
             own = next((m for m in range(i - 1, j, -1) if g.turns(m) and g.parallel(m, k)), k)
             terms.append(g.parallel(own, k) * Dot(g.e[own], g.offset[i]))
-        return sp.Add(*terms)
+        return sp.Add(*terms, *(y * Dot(g.e[k], axis) for y, axis in self._extra_slides(j)))
+
+    def _extra_slides(self, j: int) -> list[tuple[Any, Vector]]:
+        """Displacement and axis of the extra joints beyond joint j that slide."""
+        g = self.g
+        return [
+            (self.q[i] * g.pitch.get(i, 1), g.e[i])
+            for i in range(j + 1, g.count + 1)
+            if g.is_extra(i) and (not g.turns(i) or i in g.pitch)
+        ]
+
+    def _beyond(self, j: int) -> Vector:
+        """From joint j to the connection point, if all joints beyond are extra or unseen."""
+        g = self.g
+        offsets = [g.offset[i] for i in range(j + 1, g.count + 2)]
+        return vector_sum([*offsets, *(y * axis for y, axis in self._extra_slides(j))])
 
     def _across_slide(self, j: int, p: int) -> tuple[str, Vector, Any] | None:
         g = self.g
@@ -234,7 +252,10 @@ class _Solver:
             if g.parallel(j, p):
                 return None
             u = g.e[j] if g.perpendicular(j, p) else g.e[j] - Dot(g.e[j], g.e[p]) * g.e[p]
-        constant = sp.Add(*(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2)))
+        constant = sp.Add(
+            *(Dot(u, g.offset[i]) for i in range(j + 1, g.count + 2)),
+            *(y * Dot(u, axis) for y, axis in self._extra_slides(j)),
+        )
         return "linear", u, constant
 
     def _sphere(self, j: int, turning: list[int]) -> tuple[str, Vector, Any] | None:
@@ -467,13 +488,13 @@ class _Solver:
                 along_x, along_y, _ = g.axis_pattern(j, k)
                 turned = None if along_y is None else -along_y
                 return (turned, along_x, sp.S.Zero)
-            if method == "sphere" and u == g.offset[k]:
+            if method == "sphere" and u == g.offset[k] and g.group[k - 1] == j:
                 zero = g.offset_is_zero(j, k)
                 return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
         return (None, None, None)
 
     def _constant_of_link(self, stem: str, rhs: Any, unit: str) -> Any:
-        """A scalar made of parameters alone."""
+        """A scalar made of parameters, and of extra coordinates where joints beyond have them."""
         if rhs.is_number or isinstance(rhs, sp.Symbol):
             return rhs
         kind, j = stem.split("_")
@@ -485,7 +506,7 @@ class _Solver:
             title.format(j=j),
             Law.LUMPING,
             unit=unit,
-            parameter=True,
+            parameter=not any(self.g.is_extra(k) for k in range(int(j) + 1, self.g.count + 1)),
         )
 
     def _branch_symbol(self, j: int) -> sp.Symbol:
@@ -533,7 +554,7 @@ class _Solver:
         g = self.g
         reference, across, _ = self._turn_axes(j)
         n, m = self._link_axes(j)
-        tip = g.offset[g.count + 1]
+        tip = self._beyond(j)
         if tip == ZeroVector:
             self.reasons[j] = "the connection point lies on the joint's axis"
             self._numeric(j, self.reasons[j])
@@ -612,7 +633,14 @@ class _Solver:
         found = (
             self._invariant(j)
             if later
-            else ("direct", e, sp.Add(*(Dot(e, g.offset[i]) for i in range(j + 1, g.count + 2))))
+            else (
+                "direct",
+                e,
+                sp.Add(
+                    *(Dot(e, g.offset[i]) for i in range(j + 1, g.count + 2)),
+                    *(y * Dot(e, axis) for y, axis in self._extra_slides(j)),
+                ),
+            )
         )
         if found is None:
             self._numeric(j)

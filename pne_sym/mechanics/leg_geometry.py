@@ -259,6 +259,7 @@ class _Builder:
                     f"axis of joint {j}, preceding link's frame",
                     f"joints[{j - 1}].axis",
                     lambda leg, j=j: leg.joints[j - 1].axis,
+                    (2,) if self.planar else (),
                 )
             if joint.kind is JointKind.HELICAL:
                 (g.pitch[j],) = self.field(
@@ -420,8 +421,13 @@ class _Builder:
         self.g.x_axis[group] = x_vector
         return matrix, (x_vector, Cross(z_vector, x_vector), z_vector)
 
-    def _perpendicular_unit(self, group: int, direction: Any, z: Any, zero: str = "") -> Any:
-        """Equation for the unit vector along the direction's part perpendicular to z."""
+    def _perpendicular_unit(
+        self, group: int, direction: Any, z: Any, zero: str = "", frame: str = ""
+    ) -> Any:
+        """Equation for the unit vector along the direction's part perpendicular to z.
+
+        `frame` is where direction and z are given, by default in the group itself.
+        """
         name = self.g.name(f"n{zero}_{group}")
         part = self.book.define(
             f"{name}_part",
@@ -430,7 +436,7 @@ class _Builder:
             f"part of the direction perpendicular to axis {group}",
             Law.GEOMETRY,
             parameter=True,
-            body=self.g.frame("spec", group),
+            body=frame or self.g.frame("spec", group),
         )
         return self.book.define(
             name,
@@ -535,7 +541,7 @@ class _Builder:
             f"direction of interest of group {j} at zero displacement",
             "-",
         )
-        x_zero = self._perpendicular_unit(j, direction, axis, zero="0")
+        x_zero = self._perpendicular_unit(j, direction, axis, zero="0", frame=frame)
         g.zero_turn[j] = (
             self.book.define(
                 g.name(f"c0_{j}"),

@@ -16,7 +16,11 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
-from pne_sym.mechanics.constraints import directions_left_out, wrenches_left_out
+from pne_sym.mechanics.constraints import (
+    directions_left_out,
+    plane_normal,
+    wrenches_left_out,
+)
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.platform_motion import PlatformMotion
@@ -432,7 +436,7 @@ class MotionWriter:
         duals = []
         planar = len(vectors) == 2
         if planar:
-            normal = next(g.e[j] for j in range(1, g.count + 1) if g.turns(j))
+            normal = plane_normal(book, g)
             others = [(vectors[1], normal), (normal, vectors[0])]
         else:
             others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
