@@ -45,6 +45,11 @@ class Book:
         """Open a chapter; equations that follow belong to it."""
         self._chapters.append((id_, title, leg_type, text, []))
 
+    def retext(self, text: str) -> None:
+        """Give the open chapter another opening paragraph."""
+        id_, title, leg_type, _, equations = self._chapters[-1]
+        self._chapters[-1] = (id_, title, leg_type, text, equations)
+
     def note_quantity(self, quantity: Quantity) -> None:
         """Introduce a name.
 

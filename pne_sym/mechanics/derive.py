@@ -118,6 +118,7 @@ def _derive_leg(
     inverse = invert(book, g, x, normal, constrained=constrained)
     if not inverse.is_closed:
         book.reset(before)
+        book.retext(_ITERATED)
         inverse = given_displacements(book, g, inverse.reasons)
     inverse.S = S
     for branch, signs in zip(
@@ -127,7 +128,8 @@ def _derive_leg(
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
     kinematics = MotionWriter(book, g, platform, space, inverse)
     motion = kinematics.write(prefix)
-    book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", _NEWTON_EULER, prefix)
+    text = _NEWTON_EULER + (_MOMENTS if g.pairs else "")
+    book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
     dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
     leg = Leg(g, motion, dynamics)
     _joint_outputs(book, manipulator, leg, inverse)
@@ -269,6 +271,18 @@ _INVERSE = (
     r"angle from the reference direction $`\hat{\mathbf x}^0_j`$; $`\rho_j`$ is its amplitude, and "
     r"$`\sigma_j`$, the sign of the root, is that of the home position. What is zero by structure "
     r"is left out."
+)
+_ITERATED = (
+    r"Not every joint of this leg has a closed form, so its displacements are found together, by "
+    r"Newton's iteration on the loop closure from a first guess. All that follows is closed in "
+    r"pose and displacements."
+)
+_MOMENTS = (
+    r" The platform joint of this leg transmits moments along $`\mathbf n_{m1}`$ and on, which do "
+    r"work along the turning joints too: the equilibrium along joint j holds the amounts of these "
+    r"moments times $`\mathbf e_j\cdot\mathbf n_{mi}`$ besides, and the reciprocal wrenches with "
+    r"force parts $`\mathbf w_j`$ and moment parts $`\mathbf o_j`$ solve for force and moment "
+    r"together."
 )
 _NEWTON_EULER = (
     r"From the last link to the base; of the equilibrium of the links beyond a joint only the "
