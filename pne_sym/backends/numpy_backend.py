@@ -203,6 +203,8 @@ class _Writer:
         program, table = self.bundle.program, self.bundle.derivation.parameters
         used = {s.name for block in program.prepare for s in _block_symbols(block)}
         lines = ["sqrt = np.sqrt"]
+        # named, so that one more leg does not change every line that runs over the legs
+        lines += [f'_{t} = (len(_LEGS["{t}"]),)' for t in self.bundle.leg_counts]
         for name, (parameter, index) in table.entries.items():
             if name in used:
                 at = np_index(parameter.shape, index, per_leg=parameter.leg_type is not None)
@@ -213,16 +215,16 @@ class _Writer:
         for block in program.prepare:
             lines += self.statements(block.assignments)
             for target, value in block.sums:
-                count = self.bundle.leg_counts[block.leg_type]
-                lines.append(f"{target} = np.sum(np.broadcast_to({self.text(value)}, ({count},)))")
+                legs = f"_{block.leg_type}"
+                lines.append(f"{target} = np.sum(np.broadcast_to({self.text(value)}, {legs}))")
         shared = [n for n, leg in program.prepared if not leg]
         lines.append("shared = {")
         lines += [f'    "{n}": float({n}),' for n in shared]
         lines += ["}", "legs = {"]
-        for leg_type, count in self.bundle.leg_counts.items():
+        for leg_type in self.bundle.leg_counts:
             lines.append(f'    "{leg_type}": {{')
             for n in (n for n, leg in program.prepared if leg == leg_type):
-                lines.append(f'        "{n}": np.broadcast_to({n}, ({count},)),')
+                lines.append(f'        "{n}": np.broadcast_to({n}, _{leg_type}),')
             lines.append("    },")
         lines += ["}", "return shared, legs"]
         return textwrap.indent("\n".join(lines), "    ")
