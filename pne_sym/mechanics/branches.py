@@ -102,6 +102,7 @@ def _values_at(
         if hasattr(vector, "name"):
             values[vector.name] = spec[j - 1] @ np.array(offsets[j - 1])
     values[g.name("S")] = tip
+    values |= {g.pitch[j].name: leg.joints[j - 1].pitch for j in g.pitch}
     for link, platform in g.pairs:
         end = leg.platform_joint
         values[link.name] = spec[-1] @ np.array(end.axis_link or (0.0, 0.0, 0.0))
