@@ -33,6 +33,7 @@ class CView:
         functions: texts of the functions of the program.
         calls: calls of such functions in templates, by purpose.
         driven: number of rows on which drives act.
+        free: number of equations for undriven extra coordinates.
         padded: sizes of linear systems, padded, by purpose.
         big: largest number of rows or columns of a least-squares problem.
         q0: where the quaternion begins in X.
@@ -53,6 +54,7 @@ class CView:
     functions: tuple[str, ...]
     calls: dict[str, str]
     driven: int
+    free: int
     padded: dict[str, int]
     big: int
     q0: int
@@ -84,7 +86,7 @@ class CBackend:
         functions, runs = _functions(bundle, d)
         api = [ApiWriter(bundle.name, a) for a in api_table(bundle, d)]
         driven = tuple(c.joints.index(a) for a in c.actuators)
-        free = len(d.free_rows)
+        free = len(d.free_rows) + (len(d.driven_rows) if d.is_coupled else 0)
         return CView(
             coordinates=_coordinate_lines(d),
             parameters=tuple(parameter_fields(bundle)),
@@ -99,6 +101,7 @@ class CBackend:
             functions=functions,
             calls=_calls(runs),
             driven=len(d.driven_rows),
+            free=free,
             padded={
                 "drive": _padded(len(d.driven_rows)),
                 "forward": _padded(n["NV"] + n["NC"]),
@@ -147,6 +150,7 @@ def _calls(runs: dict[str, Routine]) -> dict[str, str]:
         "required": runs["required"].call(required="force"),
         "required_one": runs["required"].call(required="force", **one),
         "dynamics": runs["dynamics"].call(),
+        "dynamics_one": runs["dynamics"].call(**one),
         "M_one": runs["M"].call(**one),
         "Z_one": runs["Z"].call(**one),
         "legs_one": runs["legs"].call(**one),

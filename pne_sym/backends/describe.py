@@ -48,8 +48,10 @@ class Described:
         coordinates: names and order.
         pose_text, rate_text, tau_text, wrench_text: contents of X, V, tau, wrench.
         counts: (function, mul, add, div, sqrt, trig).
-        driven_rows: rows of H or Hk that can be other than zero.
-        free_rows: rows of extra coordinates that no drive acts on.
+        driven_rows: rows from which the drives are found: those of H or Hk that can be other
+            than zero, without free rows.
+        free_rows: rows of extra coordinates whose joints are not driven.
+        is_coupled: drives or constraints act on free rows too.
         has_rotation, has_quaternion, is_constrained, is_redundant, has_extras: features.
         legs: number of legs.
         is_numeric: some displacements are found by iteration; functions take q0.
@@ -67,6 +69,7 @@ class Described:
     counts: tuple[tuple[str, int, int, int, int, int], ...]
     driven_rows: tuple[int, ...]
     free_rows: tuple[int, ...]
+    is_coupled: bool
     legs: int
 
     is_numeric: bool
@@ -92,6 +95,11 @@ class Described:
         return self.sizes["NU"] + self.sizes["NC"] > len(self.driven_rows)
 
     @property
+    def is_underdriven(self) -> bool:
+        """Whether there are fewer drives than driven rows: no forces give any acceleration."""
+        return self.sizes["NU"] + self.sizes["NC"] < len(self.driven_rows)
+
+    @property
     def has_extras(self) -> bool:
         """Whether there are extra coordinates."""
         return bool(self.coordinates.extras)
@@ -110,7 +118,8 @@ def describe(bundle: Bundle) -> Described:
     c = bundle.coordinates
     extra = tuple(f"leg{i + 1}_joint{j + 1}" for i, j in c.extras)
     counts = []
-    driven = _driven_rows(bundle)
+    filled = _filled_rows(bundle)
+    passive = [k for k, joint in enumerate(c.extras, len(c.rates)) if joint not in c.actuators]
     for function in bundle.program.functions.values():
         n = count_function(function, bundle.leg_counts)
         counts.append((function.name, n.mul, n.add, n.div, n.sqrt, n.trig))
@@ -125,14 +134,15 @@ def describe(bundle: Bundle) -> Described:
         ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators),
         ", ".join(c.wrench),
         tuple(counts),
-        driven,
-        tuple(k for k in range(len(c.rates), c.sizes["NV"]) if k not in driven),
+        tuple(k for k in filled if k not in passive),
+        tuple(passive),
+        any(k in filled for k in passive),
         len(bundle.manipulator.legs),
         not all(t.is_closed for t in bundle.derivation.leg_types),
     )
 
 
-def _driven_rows(bundle: Bundle) -> tuple[int, ...]:
+def _filled_rows(bundle: Bundle) -> tuple[int, ...]:
     """Rows of H or Hk in which something stands."""
     rows = set()
     for name in ("H", "Hk"):
