@@ -21,7 +21,7 @@ _C_AND_CPP = """
     extern final float friend goto inline int long main mutable namespace new noexcept not_eq
     nullptr operator or_eq override private protected public register reinterpret_cast requires
     restrict short signed sizeof static static_assert static_cast struct switch template this
-    thread_local throw typedef typeid typename typeof union unsigned using virtual void
+    thread_local throw true false typedef typeid typename typeof union unsigned using virtual void
     volatile wchar_t xor xor_eq
 """
 _C_HEADERS = """

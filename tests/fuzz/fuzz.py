@@ -139,7 +139,7 @@ def without_nulls(value: Any) -> Any:
     """JSON null counts as left out; a schema has no word for that."""
     if isinstance(value, dict):
         return {key: without_nulls(item) for key, item in value.items() if item is not None}
-    return value
+    return [without_nulls(item) for item in value] if isinstance(value, list) else value
 
 
 def pne_gen(*arguments: str) -> tuple[int, str, str]:
