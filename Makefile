@@ -16,7 +16,8 @@ KATEX := tests/tools/katex
 # The models that stand in generated/; `all` for the whole catalogue.
 MODELS ?= all
 DOCUMENTS = $(wildcard README.md docs/*.md generated/*/*.md)
-PYTEST_ARGS ?=
+# Two workers, a file each at a time: models are compiled once per file.
+PYTEST_ARGS ?= -n 2 --dist loadfile
 
 # --- for users ----------------------------------------------------------------
 
@@ -40,6 +41,10 @@ bench: $(VENV)/core.stamp ## Measure the generated code and the generator
 .PHONY: generate
 generate: $(VENV)/core.stamp ## Write generated/
 	$(BIN)/pne-gen $(MODELS) --out generated/
+
+.PHONY: gallery
+gallery: $(VENV)/test.stamp ## Write docs/gallery.md and its pictures, from generated/ and the catalogue
+	$(BIN)/python docs/make_gallery.py
 
 # --- checks: what CI runs -----------------------------------------------------
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from pne_sym.drawing.paper import check_path, save
 from pne_sym.drawing.planar import planar_picture
-from pne_sym.drawing.scene import Scene, scene_of
+from pne_sym.drawing.scene import scene_of
 from pne_sym.drawing.shapes import Picture
 from pne_sym.drawing.spatial import spatial_picture
 from pne_sym.drawing.style import DRIVEN, EXTRA, JOINT, OUTLINE
@@ -134,4 +134,4 @@ def _legend(manipulator: Manipulator) -> tuple[tuple[str, str, str], ...]:
     return tuple(rows)
 
 
-__all__ = ["Scene", "draw", "picture"]
+__all__ = ["draw", "picture"]

@@ -15,7 +15,7 @@ from pne_sym.drawing.view import View
 
 Array = NDArray[np.float64]
 
-_FLAT = 0.2
+_FLAT = 0.1
 """Feet whose distances from a plane stay below this part of their spread stand on one plate."""
 _BAR = 0.02
 """Anchors nearer to a line than this part of their spread lie on it."""

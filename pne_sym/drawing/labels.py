@@ -13,6 +13,7 @@ Array = NDArray[np.float64]
 
 BALLOON = 6.0
 """Radius of the circle about a label, in typographic points."""
+_CLEARANCE = BALLOON + 0.8
 _APART = 13.5
 _RINGS = (5.0, 10.0, 15.0, 20.0, 26.0)
 _DIRECTIONS = 12
@@ -39,21 +40,19 @@ def _clear(label: Label, place: Array, outlines: list[Array], taken: list[Array]
     """The nearest place that covers nothing, or else least."""
     if not label.balloon:
         return place
-    reach = BALLOON + _RINGS[-1]
-    near = [
-        outline
-        for outline in outlines
-        if (outline.min(axis=0) < place + reach).all()
-        and (outline.max(axis=0) > place - reach).all()
-    ]
+    lows = np.array([outline.min(axis=0) for outline in outlines]) - _CLEARANCE
+    highs = np.array([outline.max(axis=0) for outline in outlines]) + _CLEARANCE
     best, least = place, math.inf
     for candidate in _candidates(place, np.array(label.shift)):
-        cost = float(sum(_covers(candidate, outline) for outline in near))
+        near = np.flatnonzero(((lows < candidate) & (candidate < highs)).all(axis=1))
+        cost = float(sum(_covers(candidate, outlines[k]) for k in near))
         cost += _OTHER_LABEL * sum(
             float(np.linalg.norm(candidate - other)) < _APART for other in taken
         )
-        if cost < least - 1e-9:
+        if cost < least:
             best, least = candidate, cost
+        if cost == 0.0:
+            break
     return best
 
 
@@ -75,7 +74,7 @@ def _covers(centre: Array, outline: Array) -> bool:
     lengths = np.maximum((steps * steps).sum(axis=1), 1e-12)
     along = np.clip(((centre - outline) * steps).sum(axis=1) / lengths, 0.0, 1.0)
     gaps = outline + along[:, None] * steps - centre
-    if float((gaps * gaps).sum(axis=1).min()) < (BALLOON + 0.8) ** 2:
+    if float((gaps * gaps).sum(axis=1).min()) < _CLEARANCE**2:
         return True
     after = outline + steps - centre
     before = outline - centre

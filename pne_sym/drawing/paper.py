@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from pne_sym.drawing.labels import BALLOON, label_places
 from pne_sym.drawing.shapes import Label, Picture, Shape, disc
-from pne_sym.drawing.style import LABEL, OUTLINE
+from pne_sym.drawing.style import LABEL, LINE, OUTLINE
 from pne_sym.generation import InputError
 from pne_sym.writer import OutputError
 
@@ -94,7 +94,8 @@ def _compact(svg: str) -> str:
     svg = re.sub(r'\s*\nz\s*"', 'z"', svg)
     svg = re.sub(r"(?<=[;:]) (?=[a-z#\d])", "", svg)
     svg = svg.replace("; ", ";").replace(";stroke-linecap:round", "")
-    svg = svg.replace("stroke-linecap: butt", "stroke-linecap: round")
+    svg = svg.replace(f";stroke-width:{LINE}\"", '"')
+    svg = svg.replace("stroke-linecap:butt", f"stroke-linecap:round;stroke-width:{LINE}")
     return "\n".join(line.strip() for line in svg.splitlines() if line.strip()) + "\n"
 
 

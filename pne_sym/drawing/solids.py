@@ -69,7 +69,7 @@ class Solid:
 
 def perpendiculars(axis: Array) -> tuple[Array, Array]:
     """Two unit vectors perpendicular to a unit vector and to each other."""
-    helper = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    helper = np.eye(3)[int(np.argmin(np.abs(axis).round(6)))]  # not by rounding errors
     first = np.cross(axis, helper)
     first /= np.linalg.norm(first)
     return first, np.cross(axis, first)
