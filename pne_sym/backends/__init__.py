@@ -1,0 +1,1 @@
+"""Back ends: NumPy, C, report and manifest, from the same compiled manipulator."""
