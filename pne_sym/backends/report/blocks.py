@@ -72,6 +72,32 @@ def block_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[Statemen
             note = _index_note(derivation, outputs)
             formula = block_matrix(outputs, latex, printer)
             yield Statement(f"**`{array}`.** {words}.{note}", formula)
+    if bundle.coordinates.extras:
+        yield _partition(bundle)
+
+
+def _partition(bundle: Bundle) -> Statement:
+    """The blocks of Eqs. 6 and 7 by their names."""
+    joints = [bundle.manipulator.legs[i].joints[j] for i, j in bundle.coordinates.extras]
+    driven = {joint.actuated for joint in joints}
+    equations = " and ".join(
+        words
+        for kind, words in ((True, "Eq. 6, the paper's θ"), (False, "Eq. 7, the paper's φ"))
+        if kind in driven
+    )
+    drives = r"\mathbf H_y" if True in driven else r"\mathbf 0"
+    return Statement(
+        f"**Partition.** $`x`$ marks the platform's rows and columns, $`y`$ those of the extra "
+        f"coordinates ({equations}), which come after them:",
+        (
+            r"\begin{bmatrix}\mathbf M_{xx} & \mathbf M_{xy} \\",
+            r"\mathbf M_{yx} & \mathbf M_{yy}\end{bmatrix}",
+            r"\begin{bmatrix}\mathbf A_x \\ \ddot{\mathbf y}\end{bmatrix}",
+            r"+ \begin{bmatrix}\mathbf Z_x \\ \mathbf Z_y\end{bmatrix}",
+            rf"= \begin{{bmatrix}}\mathbf H_x \\ {drives}\end{{bmatrix}}\boldsymbol\tau",
+            r"+ \begin{bmatrix}\mathbf W_{\mathrm{ext}} \\ \mathbf 0\end{bmatrix}",
+        ),
+    )
 
 
 def block_matrix(outputs: Sequence[Output], latex: str, printer: LatexPrinter) -> tuple[str, ...]:
