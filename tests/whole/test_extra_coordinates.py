@@ -12,8 +12,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from pne_sym.backends.report import ReportBackend
 from pne_sym.model.manipulator import JointKind, Manipulator
-from tests.models import catalogue, live_parameters, module, random_spec, state_at
+from tests.models import bundle, catalogue, live_parameters, module, random_spec, state_at
 from tests.oracle.projection import project
 from tests.oracle.specs import State
 
@@ -215,6 +216,16 @@ def test_a_wrench_on_the_platform_has_no_share_in_the_extra_rows(name: str, seed
     )
     free = M[c.x, c.x] - M[c.x, c.y] @ np.linalg.solve(M[c.y, c.y], M[c.y, c.x])
     assert np.allclose(change[:, c.x], np.linalg.inv(free), rtol=1e-6, atol=1e-8)
+
+
+@pytest.mark.parametrize(("name", "words"), [("planar_redundant", "Eq. 6"), (PASSIVE[0], "Eq. 7")])
+def test_the_report_names_the_blocks(name: str, words: str) -> None:
+    text = ReportBackend().emit(bundle(catalogue(name)))[f"{name}.md"]
+    (line,) = (line for line in text.splitlines() if line.startswith("**Partition.**"))
+    assert words in line
+    block = text.split(line)[1].split("```")[1]
+    assert all(rf"\mathbf M_{{{b}}}" in block for b in ("xx", "xy", "yx", "yy"))
+    assert (r"\mathbf H_y" in block) == (words == "Eq. 6")
 
 
 @pytest.mark.parametrize("name", PASSIVE)
