@@ -30,11 +30,25 @@ if TYPE_CHECKING:
     from pne_sym.generation import generate
     from pne_sym.lowering.program import lower
     from pne_sym.mechanics.derive import derive
-    from pne_sym.model.manipulator import Manipulator
+    from pne_sym.model.errors import SpecError, SpecWarning
+    from pne_sym.model.manipulator import (
+        Body,
+        Home,
+        Joint,
+        JointKind,
+        Leg,
+        Manipulator,
+        PlatformJoint,
+        PlatformJointKind,
+        Space,
+    )
     from pne_sym.pipeline import compile_model
 
+_MODEL = "Body Home Joint JointKind Leg Manipulator PlatformJoint PlatformJointKind Space".split()
 _HOMES = {
-    "Manipulator": ("pne_sym.model.manipulator", "Manipulator"),
+    **{name: ("pne_sym.model.manipulator", name) for name in _MODEL},
+    "SpecError": ("pne_sym.model.errors", "SpecError"),
+    "SpecWarning": ("pne_sym.model.errors", "SpecWarning"),
     "compile_model": ("pne_sym.pipeline", "compile_model"),
     "derive": ("pne_sym.mechanics.derive", "derive"),
     "draw": ("pne_sym.drawing", "draw"),
@@ -43,7 +57,25 @@ _HOMES = {
     "lower": ("pne_sym.lowering.program", "lower"),
 }
 
-__all__ = ["Manipulator", "compile_model", "derive", "draw", "generate", "load", "lower"]
+__all__ = [
+    "Body",
+    "Home",
+    "Joint",
+    "JointKind",
+    "Leg",
+    "Manipulator",
+    "PlatformJoint",
+    "PlatformJointKind",
+    "Space",
+    "SpecError",
+    "SpecWarning",
+    "compile_model",
+    "derive",
+    "draw",
+    "generate",
+    "load",
+    "lower",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from pne_sym.model.body import read_body
 from pne_sym.model.entry import Entry, Table
+from pne_sym.model.errors import SpecError, printable, show
 from pne_sym.model.files import parse, read_file
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.home import read_home
@@ -101,7 +102,17 @@ def checked(manipulator: Manipulator) -> Manipulator:
     Raises:
         SpecError: a field is at fault.
     """
-    return from_mapping(to_full_form(manipulator), f"Manipulator({manipulator.name!r})")
+    try:
+        form = to_full_form(manipulator)
+        source = f"Manipulator({show(manipulator.name)})"
+    except (AttributeError, TypeError, ValueError) as error:
+        raise SpecError(
+            show(manipulator),
+            "",
+            printable(f"not a manipulator: {error}"),
+            "Manipulator and its parts, of tuples of numbers",
+        ) from error
+    return from_mapping(form, source)
 
 
 def _title(table: Table, name: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import re
 import tomllib
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from pne_sym.model import body, home, joints, legs, reader
 from pne_sym.model.errors import SpecError
 from pne_sym.model.reader import from_mapping, from_text, to_full_form
+from pne_sym.starter import starter_text
 
 PAGE = (Path(__file__).parents[2] / "docs" / "spec-format.md").read_text(encoding="utf-8")
 
@@ -64,3 +66,20 @@ def test_messages_are_those_of_the_reader() -> None:
             from_text(example.replace(old, new), ".toml", "my_robot.toml")
         start, _, _ = shown.partition("...")
         assert str(caught.value).startswith(start)
+
+
+def test_the_example_in_python(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (text,) = blocks("python")
+    test = doctest.DocTestParser().get_doctest(text, {}, "spec-format", None, 0)
+    said: list[str] = []
+    assert doctest.DocTestRunner().run(test, out=said.append).failed == 0, "".join(said)
+    assert (tmp_path / "generated/pair/pair.py").is_file()
+
+
+def test_the_notation_of_new() -> None:
+    page = PAGE.partition("## A first file")[2].partition("## In an editor")[0]
+    examples = re.findall(r"^\| `([0-9]-[^`]+)`", page, flags=re.MULTILINE)
+    assert len(examples) == 4
+    for architecture in examples + re.findall(r"--legs (\S+)", page):
+        assert starter_text("my_robot", architecture)
