@@ -16,6 +16,7 @@ import numpy as np
 
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from tests.mechanics.evaluation import Array, Names
+from tests.oracle.closure import perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
 from tests.oracle.jets import cross_matrix
 
@@ -131,16 +132,26 @@ class Facts:
         return len(self.result.constraint_wrenches) > 0
 
     @cached_property
-    def duals(self) -> tuple[Array, Array]:
-        """Forces w_j and moments o_j of the reciprocal wrenches: rows by joint number."""
-        w, o = np.full((self.count + 1, 3), np.nan), np.zeros((self.count + 1, 3))
+    def moment_directions(self) -> Any:
+        """Rows: unit directions in which the platform joint transmits moments."""
+        joint = self.leg.platform_joint
         if self.point_leg:
-            w[self.free] = np.linalg.pinv(np.array([self.v(j) for j in self.free])).T
-            return w, o
-        task = self.result.rates[:, : task_size(self.manipulator.space)]
-        w[1:] = task[:, :3]
-        if task.shape[1] == 6:
-            o[1:] = task[:, 3:] - np.cross(self.arm, task[:, :3])
+            return np.zeros((0, 3))
+        if joint.kind is PlatformJointKind.RIGID:
+            return np.eye(3)
+        axis = self.platform.rotation @ np.array(joint.axis_platform)
+        if joint.kind is PlatformJointKind.UNIVERSAL:
+            return np.cross(self.rotation(self.count) @ np.array(joint.axis_link), axis)[None]
+        return np.array(perpendicular_pair(axis))
+
+    @cached_property
+    def duals(self) -> tuple[Any, Any]:
+        """Forces w_j and moments o_j of the reciprocal wrenches: rows by joint number."""
+        n = self.moment_directions
+        screws = [np.concatenate([self.v(j), n @ self.e(j) * self.turns(j)]) for j in self.free]
+        inverse = np.linalg.pinv(np.array(screws).T)
+        w, o = np.full((self.count + 1, 3), np.nan), np.full((self.count + 1, 3), np.nan)
+        w[self.free], o[self.free] = inverse[:, :3], inverse[:, 3:] @ n
         return w, o
 
     def w(self, j: int) -> Any:
