@@ -60,6 +60,7 @@ def lower(derivation: Derivation) -> Program:
     builder.quantity_of = {e.id: e.name for e in derivation.equations()}
     builder.leg_counts = {t.name: len(t.indices) for t in derivation.leg_types}
     _declare(derivation, builder)
+    shapes = _shapes(derivation)
     slices = []
     for group in (*GROUPS, *_closures(derivation)):
         stores = _cheapest_stores(derivation, builder, {a for _, names in group for a in names})
@@ -70,9 +71,10 @@ def lower(derivation: Derivation) -> Program:
                 if output.array in arrays
                 for stage, store in found
             ]
-            if chosen:
-                present = {store.array for _, store in chosen}
-                slices.append(_Slice(name, tuple(a for a in arrays if a in present), chosen))
+            # What is zero throughout, as the force of massless legs is, has no stores.
+            present = tuple(a for a in arrays if 0 not in shapes.get(a, (0,)))
+            if present:
+                slices.append(_Slice(name, present, chosen))
     program = _program(derivation, builder, slices)
     table = derivation.parameters
     outside = {name: parameter.leg_type or "" for name, (parameter, _) in table.entries.items()}
