@@ -2,7 +2,7 @@
 
 The text of the module may come from a folder that the user named: it is run as
 any module of theirs would be on import, but in a process that is isolated from
-the environment (`python -I`, empty working folder) and ended after a minute.
+the environment (`python -I`, empty working folder) and ended after two minutes.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-TIME_LIMIT = 60.0
+TIME_LIMIT = 120.0
 """Seconds that one module may take."""
 
 
