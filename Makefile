@@ -36,7 +36,7 @@ test: $(VENV)/test.stamp ## Run all tests
 
 .PHONY: bench
 bench: $(VENV)/core.stamp ## Measure the generated code and the generator
-	$(BIN)/python bench/bench.py
+	$(BIN)/python bench/c_speed.py
 
 .PHONY: generate
 generate: $(VENV)/core.stamp ## Write generated/

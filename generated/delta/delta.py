@@ -256,6 +256,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rus = (len(_LEGS["rus"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -301,7 +302,7 @@ def _prepare(p):
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
     h_star_t_3 = platform_centre_of_mass_z*platform_mass
-    # (rus-K27) constant of the link
+    # (rus-K27) squared length, across the axis, of the direction fixed in link 3
     uu_3_t = rus_platform_joint_offset_x*rus_platform_joint_offset_x
     # (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x
@@ -396,10 +397,10 @@ def _prepare(p):
     rus_link1_mass*(rus_base_frame_xz*rus_base_point_x + rus_base_frame_yz*rus_base_point_y +
         rus_base_frame_zz*rus_base_point_z)
     )
-    total_rus = np.sum(np.broadcast_to(rus_link3_mass, (3,)))
-    total_rus_x = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_rus_y = np.sum(np.broadcast_to(h_star_t_5, (3,)))
-    total_rus_z = np.sum(np.broadcast_to(h_star_t_6, (3,)))
+    total_rus = np.sum(np.broadcast_to(rus_link3_mass, _rus))
+    total_rus_x = np.sum(np.broadcast_to(h_star_t_4, _rus))
+    total_rus_y = np.sum(np.broadcast_to(h_star_t_5, _rus))
+    total_rus_z = np.sum(np.broadcast_to(h_star_t_6, _rus))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rus
     # (M2) centripetal force and weight of the platform
@@ -424,62 +425,62 @@ def _prepare(p):
     }
     legs = {
         "rus": {
-            "J_1_zz": np.broadcast_to(J_1_zz, (3,)),
-            "J_3_xx": np.broadcast_to(J_3_xx, (3,)),
-            "J_3_xy": np.broadcast_to(J_3_xy, (3,)),
-            "J_3_xz": np.broadcast_to(J_3_xz, (3,)),
-            "J_3_yy": np.broadcast_to(J_3_yy, (3,)),
-            "J_3_yz": np.broadcast_to(J_3_yz, (3,)),
-            "J_3_zz": np.broadcast_to(J_3_zz, (3,)),
-            "Kd_1_t_2": np.broadcast_to(Kd_1_t_2, (3,)),
-            "Kd_1_t_3": np.broadcast_to(Kd_1_t_3, (3,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (3,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (3,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "branch_2": np.broadcast_to(branch_2, (3,)),
-            "d_mu_3_t": np.broadcast_to(d_mu_3_t, (3,)),
-            "d_mu_3_t_2": np.broadcast_to(d_mu_3_t_2, (3,)),
-            "d_mu_3_t_3": np.broadcast_to(d_mu_3_t_3, (3,)),
-            "d_phi_3_t": np.broadcast_to(d_phi_3_t, (3,)),
-            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_1_z": np.broadcast_to(h_1_z, (3,)),
-            "h_3_x": np.broadcast_to(h_3_x, (3,)),
-            "h_3_y": np.broadcast_to(h_3_y, (3,)),
-            "h_3_z": np.broadcast_to(h_3_z, (3,)),
-            "inv_Kd_1_t_6": np.broadcast_to(inv_Kd_1_t_6, (3,)),
-            "inv_rus_platform_joint_offset_x": np.broadcast_to(inv_rus_platform_joint_offset_x, (3,)),
-            "inv_uu_3_t": np.broadcast_to(inv_uu_3_t, (3,)),
-            "potential_t": np.broadcast_to(potential_t, (3,)),
-            "rho2_1_t": np.broadcast_to(rho2_1_t, (3,)),
-            "rus_base_frame_xx": np.broadcast_to(rus_base_frame_xx, (3,)),
-            "rus_base_frame_xy": np.broadcast_to(rus_base_frame_xy, (3,)),
-            "rus_base_frame_xz": np.broadcast_to(rus_base_frame_xz, (3,)),
-            "rus_base_frame_yx": np.broadcast_to(rus_base_frame_yx, (3,)),
-            "rus_base_frame_yy": np.broadcast_to(rus_base_frame_yy, (3,)),
-            "rus_base_frame_yz": np.broadcast_to(rus_base_frame_yz, (3,)),
-            "rus_base_frame_zx": np.broadcast_to(rus_base_frame_zx, (3,)),
-            "rus_base_frame_zy": np.broadcast_to(rus_base_frame_zy, (3,)),
-            "rus_base_frame_zz": np.broadcast_to(rus_base_frame_zz, (3,)),
-            "rus_base_point_x": np.broadcast_to(rus_base_point_x, (3,)),
-            "rus_base_point_y": np.broadcast_to(rus_base_point_y, (3,)),
-            "rus_base_point_z": np.broadcast_to(rus_base_point_z, (3,)),
-            "rus_joint2_offset_x": np.broadcast_to(rus_joint2_offset_x, (3,)),
-            "rus_link1_mass": np.broadcast_to(rus_link1_mass, (3,)),
-            "rus_link3_mass": np.broadcast_to(rus_link3_mass, (3,)),
-            "rus_platform_joint_offset_x": np.broadcast_to(rus_platform_joint_offset_x, (3,)),
-            "rus_platform_point_x": np.broadcast_to(rus_platform_point_x, (3,)),
-            "rus_platform_point_y": np.broadcast_to(rus_platform_point_y, (3,)),
-            "rus_platform_point_z": np.broadcast_to(rus_platform_point_z, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "size_t_3": np.broadcast_to(size_t_3, (3,)),
+            "J_1_zz": np.broadcast_to(J_1_zz, _rus),
+            "J_3_xx": np.broadcast_to(J_3_xx, _rus),
+            "J_3_xy": np.broadcast_to(J_3_xy, _rus),
+            "J_3_xz": np.broadcast_to(J_3_xz, _rus),
+            "J_3_yy": np.broadcast_to(J_3_yy, _rus),
+            "J_3_yz": np.broadcast_to(J_3_yz, _rus),
+            "J_3_zz": np.broadcast_to(J_3_zz, _rus),
+            "Kd_1_t_2": np.broadcast_to(Kd_1_t_2, _rus),
+            "Kd_1_t_3": np.broadcast_to(Kd_1_t_3, _rus),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _rus),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _rus),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _rus),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rus),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rus),
+            "branch_1": np.broadcast_to(branch_1, _rus),
+            "branch_2": np.broadcast_to(branch_2, _rus),
+            "d_mu_3_t": np.broadcast_to(d_mu_3_t, _rus),
+            "d_mu_3_t_2": np.broadcast_to(d_mu_3_t_2, _rus),
+            "d_mu_3_t_3": np.broadcast_to(d_mu_3_t_3, _rus),
+            "d_phi_3_t": np.broadcast_to(d_phi_3_t, _rus),
+            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, _rus),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rus),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rus),
+            "g_r0_z": np.broadcast_to(g_r0_z, _rus),
+            "h_1_x": np.broadcast_to(h_1_x, _rus),
+            "h_1_y": np.broadcast_to(h_1_y, _rus),
+            "h_1_z": np.broadcast_to(h_1_z, _rus),
+            "h_3_x": np.broadcast_to(h_3_x, _rus),
+            "h_3_y": np.broadcast_to(h_3_y, _rus),
+            "h_3_z": np.broadcast_to(h_3_z, _rus),
+            "inv_Kd_1_t_6": np.broadcast_to(inv_Kd_1_t_6, _rus),
+            "inv_rus_platform_joint_offset_x": np.broadcast_to(inv_rus_platform_joint_offset_x, _rus),
+            "inv_uu_3_t": np.broadcast_to(inv_uu_3_t, _rus),
+            "potential_t": np.broadcast_to(potential_t, _rus),
+            "rho2_1_t": np.broadcast_to(rho2_1_t, _rus),
+            "rus_base_frame_xx": np.broadcast_to(rus_base_frame_xx, _rus),
+            "rus_base_frame_xy": np.broadcast_to(rus_base_frame_xy, _rus),
+            "rus_base_frame_xz": np.broadcast_to(rus_base_frame_xz, _rus),
+            "rus_base_frame_yx": np.broadcast_to(rus_base_frame_yx, _rus),
+            "rus_base_frame_yy": np.broadcast_to(rus_base_frame_yy, _rus),
+            "rus_base_frame_yz": np.broadcast_to(rus_base_frame_yz, _rus),
+            "rus_base_frame_zx": np.broadcast_to(rus_base_frame_zx, _rus),
+            "rus_base_frame_zy": np.broadcast_to(rus_base_frame_zy, _rus),
+            "rus_base_frame_zz": np.broadcast_to(rus_base_frame_zz, _rus),
+            "rus_base_point_x": np.broadcast_to(rus_base_point_x, _rus),
+            "rus_base_point_y": np.broadcast_to(rus_base_point_y, _rus),
+            "rus_base_point_z": np.broadcast_to(rus_base_point_z, _rus),
+            "rus_joint2_offset_x": np.broadcast_to(rus_joint2_offset_x, _rus),
+            "rus_link1_mass": np.broadcast_to(rus_link1_mass, _rus),
+            "rus_link3_mass": np.broadcast_to(rus_link3_mass, _rus),
+            "rus_platform_joint_offset_x": np.broadcast_to(rus_platform_joint_offset_x, _rus),
+            "rus_platform_point_x": np.broadcast_to(rus_platform_point_x, _rus),
+            "rus_platform_point_y": np.broadcast_to(rus_platform_point_y, _rus),
+            "rus_platform_point_z": np.broadcast_to(rus_platform_point_z, _rus),
+            "size": np.broadcast_to(size, _rus),
+            "size_t_3": np.broadcast_to(size_t_3, _rus),
         },
     }
     return shared, legs
@@ -676,11 +677,11 @@ def _dynamics_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1030,11 +1031,11 @@ def _M_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1274,11 +1275,11 @@ def _Z_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1515,11 +1516,11 @@ def _H_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1663,11 +1664,11 @@ def _required_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1926,11 +1927,11 @@ def _inverse_kinematics_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -2004,11 +2005,11 @@ def _joint_rates_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -2148,11 +2149,11 @@ def _joint_accelerations_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -2340,11 +2341,11 @@ def _legs_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -2607,11 +2608,11 @@ def _potential_rus(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rus-K3) component along the reference direction
     px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx
-    # (rus-K6) factor of cos in the equation of joint 1
+    # (rus-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rus_joint2_offset_x
     # (rus-K4) component across the reference direction
     py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy
-    # (rus-K7) factor of sin in the equation of joint 1
+    # (rus-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rus_joint2_offset_x
     # (rus-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -3151,7 +3152,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -449,7 +449,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_rrr[] = {-1};
         const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) constant of the link */
+        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -812,11 +812,11 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1266,11 +1266,11 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1646,11 +1646,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1977,11 +1977,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2567,11 +2567,11 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2883,11 +2883,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3110,11 +3110,11 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3381,11 +3381,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3825,11 +3825,11 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -4131,11 +4131,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;

@@ -279,6 +279,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rr = (len(_LEGS["rr"]),)
+    _rrr = (len(_LEGS["rrr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -356,7 +358,7 @@ def _prepare(p):
     # (V1) potential energy
     potential_t = rr_base_point_x*rr_link1_mass
     potential_t_2 = rr_base_point_y*rr_link1_mass
-    # (rrr-K17) constant of the link
+    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
@@ -407,11 +409,11 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, (1,)))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, (1,)))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, (1,)))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_5, (1,)))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_6, (1,)))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_5, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_6, _rrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr
     # (L2) first moment about the platform origin
@@ -438,59 +440,59 @@ def _prepare(p):
     }
     legs = {
         "rr": {
-            "J_1_rr_zz": np.broadcast_to(J_1_rr_zz, (1,)),
-            "Q_rr_t": np.broadcast_to(Q_rr_t, (1,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (1,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (1,)),
-            "h_1_rr_x": np.broadcast_to(h_1_rr_x, (1,)),
-            "h_1_rr_y": np.broadcast_to(h_1_rr_y, (1,)),
-            "inv_rr_platform_joint_offset_x": np.broadcast_to(inv_rr_platform_joint_offset_x, (1,)),
-            "n_c_rr_t": np.broadcast_to(n_c_rr_t, (1,)),
-            "n_c_rr_x": np.broadcast_to(n_c_rr_x, (1,)),
-            "potential_t": np.broadcast_to(potential_t, (1,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (1,)),
-            "root_1_rr_t": np.broadcast_to(root_1_rr_t, (1,)),
-            "rr_base_frame_xx": np.broadcast_to(rr_base_frame_xx, (1,)),
-            "rr_base_frame_xy": np.broadcast_to(rr_base_frame_xy, (1,)),
-            "rr_base_frame_yx": np.broadcast_to(rr_base_frame_yx, (1,)),
-            "rr_base_frame_yy": np.broadcast_to(rr_base_frame_yy, (1,)),
-            "rr_base_point_x": np.broadcast_to(rr_base_point_x, (1,)),
-            "rr_base_point_y": np.broadcast_to(rr_base_point_y, (1,)),
-            "rr_platform_joint_offset_x": np.broadcast_to(rr_platform_joint_offset_x, (1,)),
-            "rr_platform_point_x": np.broadcast_to(rr_platform_point_x, (1,)),
-            "rr_platform_point_y": np.broadcast_to(rr_platform_point_y, (1,)),
+            "J_1_rr_zz": np.broadcast_to(J_1_rr_zz, _rr),
+            "Q_rr_t": np.broadcast_to(Q_rr_t, _rr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rr),
+            "h_1_rr_x": np.broadcast_to(h_1_rr_x, _rr),
+            "h_1_rr_y": np.broadcast_to(h_1_rr_y, _rr),
+            "inv_rr_platform_joint_offset_x": np.broadcast_to(inv_rr_platform_joint_offset_x, _rr),
+            "n_c_rr_t": np.broadcast_to(n_c_rr_t, _rr),
+            "n_c_rr_x": np.broadcast_to(n_c_rr_x, _rr),
+            "potential_t": np.broadcast_to(potential_t, _rr),
+            "potential_t_2": np.broadcast_to(potential_t_2, _rr),
+            "root_1_rr_t": np.broadcast_to(root_1_rr_t, _rr),
+            "rr_base_frame_xx": np.broadcast_to(rr_base_frame_xx, _rr),
+            "rr_base_frame_xy": np.broadcast_to(rr_base_frame_xy, _rr),
+            "rr_base_frame_yx": np.broadcast_to(rr_base_frame_yx, _rr),
+            "rr_base_frame_yy": np.broadcast_to(rr_base_frame_yy, _rr),
+            "rr_base_point_x": np.broadcast_to(rr_base_point_x, _rr),
+            "rr_base_point_y": np.broadcast_to(rr_base_point_y, _rr),
+            "rr_platform_joint_offset_x": np.broadcast_to(rr_platform_joint_offset_x, _rr),
+            "rr_platform_point_x": np.broadcast_to(rr_platform_point_x, _rr),
+            "rr_platform_point_y": np.broadcast_to(rr_platform_point_y, _rr),
         },
         "rrr": {
-            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, (1,)),
-            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, (1,)),
-            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, (1,)),
-            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, (1,)),
-            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, (1,)),
-            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, (1,)),
-            "branch_1_rrr": np.broadcast_to(branch_1_rrr, (1,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (1,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (1,)),
-            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, (1,)),
-            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, (1,)),
-            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, (1,)),
-            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, (1,)),
-            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, (1,)),
-            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, (1,)),
-            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, (1,)),
-            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, (1,)),
-            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, (1,)),
-            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, (1,)),
-            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, (1,)),
-            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, (1,)),
-            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, (1,)),
-            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, (1,)),
-            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, (1,)),
-            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, (1,)),
-            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, (1,)),
-            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, (1,)),
-            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, (1,)),
-            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, (1,)),
-            "size_rrr": np.broadcast_to(size_rrr, (1,)),
+            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
+            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
+            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
+            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
+            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
+            "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr),
+            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
+            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, _rrr),
+            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
+            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
+            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
+            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
+            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
+            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
+            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, _rrr),
+            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, _rrr),
+            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, _rrr),
+            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, _rrr),
+            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, _rrr),
+            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, _rrr),
+            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, _rrr),
+            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, _rrr),
+            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, _rrr),
+            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, _rrr),
+            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, _rrr),
+            "size_rrr": np.broadcast_to(size_rrr, _rrr),
         },
     }
     return shared, legs
@@ -787,11 +789,11 @@ def _dynamics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1046,11 +1048,11 @@ def _M_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1248,11 +1250,11 @@ def _Z_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1433,11 +1435,11 @@ def _H_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1724,11 +1726,11 @@ def _required_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1919,11 +1921,11 @@ def _inverse_kinematics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2025,11 +2027,11 @@ def _joint_rates_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2167,11 +2169,11 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2397,11 +2399,11 @@ def _legs_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2593,11 +2595,11 @@ def _potential_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -3348,7 +3350,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -234,6 +234,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rpr = (len(_LEGS["rpr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -303,9 +304,9 @@ def _prepare(p):
     # (V1) potential energy
     b_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
     b_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, (2,)))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, (2,)))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, (2,)))
+    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr
     # (M2) centripetal force and weight of the platform
@@ -325,32 +326,32 @@ def _prepare(p):
     }
     legs = {
         "rpr": {
-            "J_group_1_zz": np.broadcast_to(J_group_1_zz, (2,)),
-            "Sigma_1_xx": np.broadcast_to(Sigma_1_xx, (2,)),
-            "Sigma_1_yy": np.broadcast_to(Sigma_1_yy, (2,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (2,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (2,)),
-            "branch_1": np.broadcast_to(branch_1, (2,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (2,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (2,)),
-            "h_1_x": np.broadcast_to(h_1_x, (2,)),
-            "h_1_y": np.broadcast_to(h_1_y, (2,)),
-            "h_2_x": np.broadcast_to(h_2_x, (2,)),
-            "h_2_y": np.broadcast_to(h_2_y, (2,)),
-            "h_group_1_x": np.broadcast_to(h_group_1_x, (2,)),
-            "h_group_1_y": np.broadcast_to(h_group_1_y, (2,)),
-            "rpr_base_frame_xx": np.broadcast_to(rpr_base_frame_xx, (2,)),
-            "rpr_base_frame_xy": np.broadcast_to(rpr_base_frame_xy, (2,)),
-            "rpr_base_frame_yx": np.broadcast_to(rpr_base_frame_yx, (2,)),
-            "rpr_base_frame_yy": np.broadcast_to(rpr_base_frame_yy, (2,)),
-            "rpr_base_point_x": np.broadcast_to(rpr_base_point_x, (2,)),
-            "rpr_base_point_y": np.broadcast_to(rpr_base_point_y, (2,)),
-            "rpr_link1_mass": np.broadcast_to(rpr_link1_mass, (2,)),
-            "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, (2,)),
-            "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, (2,)),
-            "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, (2,)),
-            "size": np.broadcast_to(size, (2,)),
-            "size_t_3": np.broadcast_to(size_t_3, (2,)),
+            "J_group_1_zz": np.broadcast_to(J_group_1_zz, _rpr),
+            "Sigma_1_xx": np.broadcast_to(Sigma_1_xx, _rpr),
+            "Sigma_1_yy": np.broadcast_to(Sigma_1_yy, _rpr),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rpr),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rpr),
+            "branch_1": np.broadcast_to(branch_1, _rpr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rpr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rpr),
+            "h_1_x": np.broadcast_to(h_1_x, _rpr),
+            "h_1_y": np.broadcast_to(h_1_y, _rpr),
+            "h_2_x": np.broadcast_to(h_2_x, _rpr),
+            "h_2_y": np.broadcast_to(h_2_y, _rpr),
+            "h_group_1_x": np.broadcast_to(h_group_1_x, _rpr),
+            "h_group_1_y": np.broadcast_to(h_group_1_y, _rpr),
+            "rpr_base_frame_xx": np.broadcast_to(rpr_base_frame_xx, _rpr),
+            "rpr_base_frame_xy": np.broadcast_to(rpr_base_frame_xy, _rpr),
+            "rpr_base_frame_yx": np.broadcast_to(rpr_base_frame_yx, _rpr),
+            "rpr_base_frame_yy": np.broadcast_to(rpr_base_frame_yy, _rpr),
+            "rpr_base_point_x": np.broadcast_to(rpr_base_point_x, _rpr),
+            "rpr_base_point_y": np.broadcast_to(rpr_base_point_y, _rpr),
+            "rpr_link1_mass": np.broadcast_to(rpr_link1_mass, _rpr),
+            "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, _rpr),
+            "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, _rpr),
+            "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, _rpr),
+            "size": np.broadcast_to(size, _rpr),
+            "size_t_3": np.broadcast_to(size_t_3, _rpr),
         },
     }
     return shared, legs
@@ -1573,7 +1574,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -399,7 +399,7 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_rrr[] = {1};
         const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) constant of the link */
+        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -504,7 +504,7 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         const real rrr2_link2_inertia_zz = params->rrr2_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_rrr2[] = {-1};
         const real branch_1_rrr2 = signs_branch_1_rrr2[leg];
-        /* (rrr2-K17) constant of the link */
+        /* (rrr2-K17) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x;
         /* (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -682,11 +682,11 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -884,11 +884,11 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -1195,11 +1195,11 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1327,11 +1327,11 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -1577,11 +1577,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1721,11 +1721,11 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -1957,11 +1957,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2061,11 +2061,11 @@ INLINE void H_legs_rrr2(const prepared *m, size_t leg, size_t legs, const H_valu
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -2258,11 +2258,11 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2431,11 +2431,11 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -2667,11 +2667,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2742,11 +2742,11 @@ INLINE void inverse_kinematics_legs_rrr2(const prepared *m, size_t leg, size_t l
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -2895,11 +2895,11 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2993,11 +2993,11 @@ INLINE void joint_rates_legs_rrr2(const prepared *m, size_t leg, size_t legs, co
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -3179,11 +3179,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3295,11 +3295,11 @@ INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t 
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -3506,11 +3506,11 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3685,11 +3685,11 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;
@@ -3912,11 +3912,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -4000,11 +4000,11 @@ INLINE void potential_legs_rrr2(const prepared *m, size_t leg, size_t legs, cons
         const real Kd_1_rrr2 = R(0.5)*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3;
         /* (rrr2-K3) component along the reference direction */
         const real px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx;
-        /* (rrr2-K6) factor of cos in the equation of joint 1 */
+        /* (rrr2-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K4) component across the reference direction */
         const real py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy;
-        /* (rrr2-K7) factor of sin in the equation of joint 1 */
+        /* (rrr2-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-K8) squared amplitude */
         const real rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2;

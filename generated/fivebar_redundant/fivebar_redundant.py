@@ -292,6 +292,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrr = (len(_LEGS["rrr"]),)
+    _rrr2 = (len(_LEGS["rrr2"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -338,7 +340,7 @@ def _prepare(p):
     # (L2) first moment about the platform origin
     h_star_t = platform_centre_of_mass_x*platform_mass
     h_star_t_2 = platform_centre_of_mass_y*platform_mass
-    # (rrr-K17) constant of the link
+    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
@@ -387,10 +389,10 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, (1,)))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, (1,)))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, (1,)))
-    # (rrr2-K17) constant of the link
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    # (rrr2-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x
     # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr2_t = rrr2_joint2_offset_x*rrr2_joint2_offset_x
@@ -439,9 +441,9 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr2_r0_x = rrr2_base_frame_xx*rrr2_base_point_x + rrr2_base_frame_yx*rrr2_base_point_y
     b_rrr2_r0_y = rrr2_base_frame_xy*rrr2_base_point_x + rrr2_base_frame_yy*rrr2_base_point_y
-    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, (1,)))
-    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, (1,)))
-    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, (1,)))
+    total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, _rrr2))
+    total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, _rrr2))
+    total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, _rrr2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr + total_rrr2
     # (M2) centripetal force and weight of the platform
@@ -461,68 +463,68 @@ def _prepare(p):
     }
     legs = {
         "rrr": {
-            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, (1,)),
-            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, (1,)),
-            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, (1,)),
-            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, (1,)),
-            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, (1,)),
-            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, (1,)),
-            "branch_1_rrr": np.broadcast_to(branch_1_rrr, (1,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (1,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (1,)),
-            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, (1,)),
-            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, (1,)),
-            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, (1,)),
-            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, (1,)),
-            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, (1,)),
-            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, (1,)),
-            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, (1,)),
-            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, (1,)),
-            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, (1,)),
-            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, (1,)),
-            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, (1,)),
-            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, (1,)),
-            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, (1,)),
-            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, (1,)),
-            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, (1,)),
-            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, (1,)),
-            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, (1,)),
-            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, (1,)),
-            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, (1,)),
-            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, (1,)),
-            "size_rrr": np.broadcast_to(size_rrr, (1,)),
+            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
+            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
+            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
+            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
+            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
+            "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rrr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rrr),
+            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
+            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, _rrr),
+            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
+            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
+            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
+            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
+            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
+            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
+            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, _rrr),
+            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, _rrr),
+            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, _rrr),
+            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, _rrr),
+            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, _rrr),
+            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, _rrr),
+            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, _rrr),
+            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, _rrr),
+            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, _rrr),
+            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, _rrr),
+            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, _rrr),
+            "size_rrr": np.broadcast_to(size_rrr, _rrr),
         },
         "rrr2": {
-            "J_1_rrr2_zz": np.broadcast_to(J_1_rrr2_zz, (1,)),
-            "J_2_rrr2_zz": np.broadcast_to(J_2_rrr2_zz, (1,)),
-            "Kd_1_rrr2_t_2": np.broadcast_to(Kd_1_rrr2_t_2, (1,)),
-            "Kd_1_rrr2_t_3": np.broadcast_to(Kd_1_rrr2_t_3, (1,)),
-            "b_rrr2_r0_x": np.broadcast_to(b_rrr2_r0_x, (1,)),
-            "b_rrr2_r0_y": np.broadcast_to(b_rrr2_r0_y, (1,)),
-            "branch_1_rrr2": np.broadcast_to(branch_1_rrr2, (1,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (1,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (1,)),
-            "h_1_rrr2_x": np.broadcast_to(h_1_rrr2_x, (1,)),
-            "h_1_rrr2_y": np.broadcast_to(h_1_rrr2_y, (1,)),
-            "h_2_rrr2_x": np.broadcast_to(h_2_rrr2_x, (1,)),
-            "h_2_rrr2_y": np.broadcast_to(h_2_rrr2_y, (1,)),
-            "inv_Kd_1_rrr2_t_5": np.broadcast_to(inv_Kd_1_rrr2_t_5, (1,)),
-            "inv_rrr2_platform_joint_offset_x": np.broadcast_to(inv_rrr2_platform_joint_offset_x, (1,)),
-            "inv_uu_2_rrr2_t": np.broadcast_to(inv_uu_2_rrr2_t, (1,)),
-            "rho2_1_rrr2_t": np.broadcast_to(rho2_1_rrr2_t, (1,)),
-            "rrr2_base_frame_xx": np.broadcast_to(rrr2_base_frame_xx, (1,)),
-            "rrr2_base_frame_xy": np.broadcast_to(rrr2_base_frame_xy, (1,)),
-            "rrr2_base_frame_yx": np.broadcast_to(rrr2_base_frame_yx, (1,)),
-            "rrr2_base_frame_yy": np.broadcast_to(rrr2_base_frame_yy, (1,)),
-            "rrr2_base_point_x": np.broadcast_to(rrr2_base_point_x, (1,)),
-            "rrr2_base_point_y": np.broadcast_to(rrr2_base_point_y, (1,)),
-            "rrr2_joint2_offset_x": np.broadcast_to(rrr2_joint2_offset_x, (1,)),
-            "rrr2_link1_mass": np.broadcast_to(rrr2_link1_mass, (1,)),
-            "rrr2_link2_mass": np.broadcast_to(rrr2_link2_mass, (1,)),
-            "rrr2_platform_joint_offset_x": np.broadcast_to(rrr2_platform_joint_offset_x, (1,)),
-            "rrr2_platform_point_x": np.broadcast_to(rrr2_platform_point_x, (1,)),
-            "rrr2_platform_point_y": np.broadcast_to(rrr2_platform_point_y, (1,)),
-            "size_rrr2": np.broadcast_to(size_rrr2, (1,)),
+            "J_1_rrr2_zz": np.broadcast_to(J_1_rrr2_zz, _rrr2),
+            "J_2_rrr2_zz": np.broadcast_to(J_2_rrr2_zz, _rrr2),
+            "Kd_1_rrr2_t_2": np.broadcast_to(Kd_1_rrr2_t_2, _rrr2),
+            "Kd_1_rrr2_t_3": np.broadcast_to(Kd_1_rrr2_t_3, _rrr2),
+            "b_rrr2_r0_x": np.broadcast_to(b_rrr2_r0_x, _rrr2),
+            "b_rrr2_r0_y": np.broadcast_to(b_rrr2_r0_y, _rrr2),
+            "branch_1_rrr2": np.broadcast_to(branch_1_rrr2, _rrr2),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr2),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr2),
+            "h_1_rrr2_x": np.broadcast_to(h_1_rrr2_x, _rrr2),
+            "h_1_rrr2_y": np.broadcast_to(h_1_rrr2_y, _rrr2),
+            "h_2_rrr2_x": np.broadcast_to(h_2_rrr2_x, _rrr2),
+            "h_2_rrr2_y": np.broadcast_to(h_2_rrr2_y, _rrr2),
+            "inv_Kd_1_rrr2_t_5": np.broadcast_to(inv_Kd_1_rrr2_t_5, _rrr2),
+            "inv_rrr2_platform_joint_offset_x": np.broadcast_to(inv_rrr2_platform_joint_offset_x, _rrr2),
+            "inv_uu_2_rrr2_t": np.broadcast_to(inv_uu_2_rrr2_t, _rrr2),
+            "rho2_1_rrr2_t": np.broadcast_to(rho2_1_rrr2_t, _rrr2),
+            "rrr2_base_frame_xx": np.broadcast_to(rrr2_base_frame_xx, _rrr2),
+            "rrr2_base_frame_xy": np.broadcast_to(rrr2_base_frame_xy, _rrr2),
+            "rrr2_base_frame_yx": np.broadcast_to(rrr2_base_frame_yx, _rrr2),
+            "rrr2_base_frame_yy": np.broadcast_to(rrr2_base_frame_yy, _rrr2),
+            "rrr2_base_point_x": np.broadcast_to(rrr2_base_point_x, _rrr2),
+            "rrr2_base_point_y": np.broadcast_to(rrr2_base_point_y, _rrr2),
+            "rrr2_joint2_offset_x": np.broadcast_to(rrr2_joint2_offset_x, _rrr2),
+            "rrr2_link1_mass": np.broadcast_to(rrr2_link1_mass, _rrr2),
+            "rrr2_link2_mass": np.broadcast_to(rrr2_link2_mass, _rrr2),
+            "rrr2_platform_joint_offset_x": np.broadcast_to(rrr2_platform_joint_offset_x, _rrr2),
+            "rrr2_platform_point_x": np.broadcast_to(rrr2_platform_point_x, _rrr2),
+            "rrr2_platform_point_y": np.broadcast_to(rrr2_platform_point_y, _rrr2),
+            "size_rrr2": np.broadcast_to(size_rrr2, _rrr2),
         },
     }
     return shared, legs
@@ -710,11 +712,11 @@ def _dynamics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -866,11 +868,11 @@ def _dynamics_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -1047,11 +1049,11 @@ def _M_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1142,11 +1144,11 @@ def _M_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -1266,11 +1268,11 @@ def _Z_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1375,11 +1377,11 @@ def _Z_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -1508,11 +1510,11 @@ def _H_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1584,11 +1586,11 @@ def _H_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -1675,11 +1677,11 @@ def _required_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1810,11 +1812,11 @@ def _required_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -1956,11 +1958,11 @@ def _inverse_kinematics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2004,11 +2006,11 @@ def _inverse_kinematics_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -2067,11 +2069,11 @@ def _joint_rates_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2135,11 +2137,11 @@ def _joint_rates_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -2224,11 +2226,11 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2311,11 +2313,11 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -2421,11 +2423,11 @@ def _legs_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2563,11 +2565,11 @@ def _legs_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -2709,11 +2711,11 @@ def _potential_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2764,11 +2766,11 @@ def _potential_rrr2(c, k, x, s, f):
     Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
     # (rrr2-K3) component along the reference direction
     px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
-    # (rrr2-K6) factor of cos in the equation of joint 1
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K4) component across the reference direction
     py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
-    # (rrr2-K7) factor of sin in the equation of joint 1
+    # (rrr2-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
     # (rrr2-K8) squared amplitude
     rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
@@ -3457,7 +3459,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -408,7 +408,7 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real branch_1 = signs_branch_1[leg];
         static const signed char signs_branch_2[] = {1, 1, 1, 1, 1, 1};
         const real branch_2 = signs_branch_2[leg];
-        /* (pus-K16) constant of the link */
+        /* (pus-K16) squared length, across the axis, of the direction fixed in link 3 */
         const real uu_3_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
         /* (pus-G1) size of the leg, the measure of what is near singular */
         const real size_t_ = pus_base_point_x*pus_base_point_x + pus_base_point_y*pus_base_point_y

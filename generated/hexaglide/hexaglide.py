@@ -283,6 +283,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _pus = (len(_LEGS["pus"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -343,7 +344,7 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (pus-K16) constant of the link
+    # (pus-K16) squared length, across the axis, of the direction fixed in link 3
     uu_3_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x
     # (pus-G1) size of the leg, the measure of what is near singular
     size_t = (
@@ -430,16 +431,16 @@ def _prepare(p):
     pus_link1_mass*(pus_base_frame_xz*pus_base_point_x + pus_base_frame_yz*pus_base_point_y +
         pus_base_frame_zz*pus_base_point_z)
     )
-    total_pus = np.sum(np.broadcast_to(pus_link3_mass, (6,)))
-    total_pus_x = np.sum(np.broadcast_to(h_star_t_4, (6,)))
-    total_pus_y = np.sum(np.broadcast_to(h_star_t_5, (6,)))
-    total_pus_z = np.sum(np.broadcast_to(h_star_t_6, (6,)))
-    total_pus_xx = np.sum(np.broadcast_to(J_star_t_11, (6,)))
-    total_pus_xy = np.sum(np.broadcast_to(J_star_t_12, (6,)))
-    total_pus_xz = np.sum(np.broadcast_to(J_star_t_13, (6,)))
-    total_pus_yy = np.sum(np.broadcast_to(J_star_t_14, (6,)))
-    total_pus_yz = np.sum(np.broadcast_to(J_star_t_15, (6,)))
-    total_pus_zz = np.sum(np.broadcast_to(J_star_t_16, (6,)))
+    total_pus = np.sum(np.broadcast_to(pus_link3_mass, _pus))
+    total_pus_x = np.sum(np.broadcast_to(h_star_t_4, _pus))
+    total_pus_y = np.sum(np.broadcast_to(h_star_t_5, _pus))
+    total_pus_z = np.sum(np.broadcast_to(h_star_t_6, _pus))
+    total_pus_xx = np.sum(np.broadcast_to(J_star_t_11, _pus))
+    total_pus_xy = np.sum(np.broadcast_to(J_star_t_12, _pus))
+    total_pus_xz = np.sum(np.broadcast_to(J_star_t_13, _pus))
+    total_pus_yy = np.sum(np.broadcast_to(J_star_t_14, _pus))
+    total_pus_yz = np.sum(np.broadcast_to(J_star_t_15, _pus))
+    total_pus_zz = np.sum(np.broadcast_to(J_star_t_16, _pus))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_pus
     # (L2) first moment about the platform origin
@@ -483,57 +484,57 @@ def _prepare(p):
     }
     legs = {
         "pus": {
-            "J_3_xx": np.broadcast_to(J_3_xx, (6,)),
-            "J_3_xy": np.broadcast_to(J_3_xy, (6,)),
-            "J_3_xz": np.broadcast_to(J_3_xz, (6,)),
-            "J_3_yy": np.broadcast_to(J_3_yy, (6,)),
-            "J_3_yz": np.broadcast_to(J_3_yz, (6,)),
-            "J_3_zz": np.broadcast_to(J_3_zz, (6,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (6,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (6,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (6,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (6,)),
-            "branch_1": np.broadcast_to(branch_1, (6,)),
-            "branch_2": np.broadcast_to(branch_2, (6,)),
-            "d_mu_3_t": np.broadcast_to(d_mu_3_t, (6,)),
-            "d_mu_3_t_2": np.broadcast_to(d_mu_3_t_2, (6,)),
-            "d_mu_3_t_3": np.broadcast_to(d_mu_3_t_3, (6,)),
-            "d_phi_3_t": np.broadcast_to(d_phi_3_t, (6,)),
-            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, (6,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (6,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (6,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (6,)),
-            "h_1_x": np.broadcast_to(h_1_x, (6,)),
-            "h_1_y": np.broadcast_to(h_1_y, (6,)),
-            "h_1_z": np.broadcast_to(h_1_z, (6,)),
-            "h_3_x": np.broadcast_to(h_3_x, (6,)),
-            "h_3_y": np.broadcast_to(h_3_y, (6,)),
-            "h_3_z": np.broadcast_to(h_3_z, (6,)),
-            "inv_pus_platform_joint_offset_x": np.broadcast_to(inv_pus_platform_joint_offset_x, (6,)),
-            "inv_uu_3_t": np.broadcast_to(inv_uu_3_t, (6,)),
-            "potential_t": np.broadcast_to(potential_t, (6,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (6,)),
-            "pus_base_frame_xx": np.broadcast_to(pus_base_frame_xx, (6,)),
-            "pus_base_frame_xy": np.broadcast_to(pus_base_frame_xy, (6,)),
-            "pus_base_frame_xz": np.broadcast_to(pus_base_frame_xz, (6,)),
-            "pus_base_frame_yx": np.broadcast_to(pus_base_frame_yx, (6,)),
-            "pus_base_frame_yy": np.broadcast_to(pus_base_frame_yy, (6,)),
-            "pus_base_frame_yz": np.broadcast_to(pus_base_frame_yz, (6,)),
-            "pus_base_frame_zx": np.broadcast_to(pus_base_frame_zx, (6,)),
-            "pus_base_frame_zy": np.broadcast_to(pus_base_frame_zy, (6,)),
-            "pus_base_frame_zz": np.broadcast_to(pus_base_frame_zz, (6,)),
-            "pus_base_point_x": np.broadcast_to(pus_base_point_x, (6,)),
-            "pus_base_point_y": np.broadcast_to(pus_base_point_y, (6,)),
-            "pus_base_point_z": np.broadcast_to(pus_base_point_z, (6,)),
-            "pus_link1_mass": np.broadcast_to(pus_link1_mass, (6,)),
-            "pus_link3_mass": np.broadcast_to(pus_link3_mass, (6,)),
-            "pus_platform_joint_offset_x": np.broadcast_to(pus_platform_joint_offset_x, (6,)),
-            "pus_platform_point_x": np.broadcast_to(pus_platform_point_x, (6,)),
-            "pus_platform_point_y": np.broadcast_to(pus_platform_point_y, (6,)),
-            "pus_platform_point_z": np.broadcast_to(pus_platform_point_z, (6,)),
-            "size": np.broadcast_to(size, (6,)),
-            "size_t_6": np.broadcast_to(size_t_6, (6,)),
-            "uu_3_t": np.broadcast_to(uu_3_t, (6,)),
+            "J_3_xx": np.broadcast_to(J_3_xx, _pus),
+            "J_3_xy": np.broadcast_to(J_3_xy, _pus),
+            "J_3_xz": np.broadcast_to(J_3_xz, _pus),
+            "J_3_yy": np.broadcast_to(J_3_yy, _pus),
+            "J_3_yz": np.broadcast_to(J_3_yz, _pus),
+            "J_3_zz": np.broadcast_to(J_3_zz, _pus),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _pus),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _pus),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _pus),
+            "b_r0_x": np.broadcast_to(b_r0_x, _pus),
+            "branch_1": np.broadcast_to(branch_1, _pus),
+            "branch_2": np.broadcast_to(branch_2, _pus),
+            "d_mu_3_t": np.broadcast_to(d_mu_3_t, _pus),
+            "d_mu_3_t_2": np.broadcast_to(d_mu_3_t_2, _pus),
+            "d_mu_3_t_3": np.broadcast_to(d_mu_3_t_3, _pus),
+            "d_phi_3_t": np.broadcast_to(d_phi_3_t, _pus),
+            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, _pus),
+            "g_r0_x": np.broadcast_to(g_r0_x, _pus),
+            "g_r0_y": np.broadcast_to(g_r0_y, _pus),
+            "g_r0_z": np.broadcast_to(g_r0_z, _pus),
+            "h_1_x": np.broadcast_to(h_1_x, _pus),
+            "h_1_y": np.broadcast_to(h_1_y, _pus),
+            "h_1_z": np.broadcast_to(h_1_z, _pus),
+            "h_3_x": np.broadcast_to(h_3_x, _pus),
+            "h_3_y": np.broadcast_to(h_3_y, _pus),
+            "h_3_z": np.broadcast_to(h_3_z, _pus),
+            "inv_pus_platform_joint_offset_x": np.broadcast_to(inv_pus_platform_joint_offset_x, _pus),
+            "inv_uu_3_t": np.broadcast_to(inv_uu_3_t, _pus),
+            "potential_t": np.broadcast_to(potential_t, _pus),
+            "potential_t_2": np.broadcast_to(potential_t_2, _pus),
+            "pus_base_frame_xx": np.broadcast_to(pus_base_frame_xx, _pus),
+            "pus_base_frame_xy": np.broadcast_to(pus_base_frame_xy, _pus),
+            "pus_base_frame_xz": np.broadcast_to(pus_base_frame_xz, _pus),
+            "pus_base_frame_yx": np.broadcast_to(pus_base_frame_yx, _pus),
+            "pus_base_frame_yy": np.broadcast_to(pus_base_frame_yy, _pus),
+            "pus_base_frame_yz": np.broadcast_to(pus_base_frame_yz, _pus),
+            "pus_base_frame_zx": np.broadcast_to(pus_base_frame_zx, _pus),
+            "pus_base_frame_zy": np.broadcast_to(pus_base_frame_zy, _pus),
+            "pus_base_frame_zz": np.broadcast_to(pus_base_frame_zz, _pus),
+            "pus_base_point_x": np.broadcast_to(pus_base_point_x, _pus),
+            "pus_base_point_y": np.broadcast_to(pus_base_point_y, _pus),
+            "pus_base_point_z": np.broadcast_to(pus_base_point_z, _pus),
+            "pus_link1_mass": np.broadcast_to(pus_link1_mass, _pus),
+            "pus_link3_mass": np.broadcast_to(pus_link3_mass, _pus),
+            "pus_platform_joint_offset_x": np.broadcast_to(pus_platform_joint_offset_x, _pus),
+            "pus_platform_point_x": np.broadcast_to(pus_platform_point_x, _pus),
+            "pus_platform_point_y": np.broadcast_to(pus_platform_point_y, _pus),
+            "pus_platform_point_z": np.broadcast_to(pus_platform_point_z, _pus),
+            "size": np.broadcast_to(size, _pus),
+            "size_t_6": np.broadcast_to(size_t_6, _pus),
+            "uu_3_t": np.broadcast_to(uu_3_t, _pus),
         },
     }
     return shared, legs
@@ -3640,7 +3641,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -421,7 +421,7 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         const real branch_1 = signs_branch_1[leg];
         static const signed char signs_branch_2[] = {1, 1, 1, 1, 1, 1};
         const real branch_2 = signs_branch_2[leg];
-        /* (rus-K27) constant of the link */
+        /* (rus-K27) squared length, across the axis, of the direction fixed in link 3 */
         const real uu_3_t = rus_platform_joint_offset_x*rus_platform_joint_offset_x;
         /* (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -881,11 +881,11 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -1581,11 +1581,11 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2137,11 +2137,11 @@ INLINE void Z_legs_rus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2546,11 +2546,11 @@ INLINE void H_legs_rus(const prepared *m, size_t leg, size_t legs, const H_value
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2936,11 +2936,11 @@ INLINE void required_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -3347,11 +3347,11 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t leg, size_t le
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -3583,11 +3583,11 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t leg, size_t legs, con
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -3899,11 +3899,11 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t leg, size_t l
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -4277,11 +4277,11 @@ INLINE void legs_legs_rus(const prepared *m, size_t leg, size_t legs, const legs
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -4663,11 +4663,11 @@ INLINE void potential_legs_rus(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rus-K3) component along the reference direction */
         const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
-        /* (rus-K6) factor of cos in the equation of joint 1 */
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rus_joint2_offset_x;
         /* (rus-K4) component across the reference direction */
         const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
-        /* (rus-K7) factor of sin in the equation of joint 1 */
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rus_joint2_offset_x;
         /* (rus-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;

@@ -284,6 +284,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _upru = (len(_LEGS["upru"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -458,16 +459,16 @@ def _prepare(p):
     upru_base_frame_xz*upru_base_point_x + upru_base_frame_yz*upru_base_point_y +
         upru_base_frame_zz*upru_base_point_z
     )
-    total_upru = np.sum(np.broadcast_to(upru_link4_mass, (6,)))
-    total_upru_x = np.sum(np.broadcast_to(h_star_t_4, (6,)))
-    total_upru_y = np.sum(np.broadcast_to(h_star_t_5, (6,)))
-    total_upru_z = np.sum(np.broadcast_to(h_star_t_6, (6,)))
-    total_upru_xx = np.sum(np.broadcast_to(J_star_t_11, (6,)))
-    total_upru_xy = np.sum(np.broadcast_to(J_star_t_12, (6,)))
-    total_upru_xz = np.sum(np.broadcast_to(J_star_t_13, (6,)))
-    total_upru_yy = np.sum(np.broadcast_to(J_star_t_14, (6,)))
-    total_upru_yz = np.sum(np.broadcast_to(J_star_t_15, (6,)))
-    total_upru_zz = np.sum(np.broadcast_to(J_star_t_16, (6,)))
+    total_upru = np.sum(np.broadcast_to(upru_link4_mass, _upru))
+    total_upru_x = np.sum(np.broadcast_to(h_star_t_4, _upru))
+    total_upru_y = np.sum(np.broadcast_to(h_star_t_5, _upru))
+    total_upru_z = np.sum(np.broadcast_to(h_star_t_6, _upru))
+    total_upru_xx = np.sum(np.broadcast_to(J_star_t_11, _upru))
+    total_upru_xy = np.sum(np.broadcast_to(J_star_t_12, _upru))
+    total_upru_xz = np.sum(np.broadcast_to(J_star_t_13, _upru))
+    total_upru_yy = np.sum(np.broadcast_to(J_star_t_14, _upru))
+    total_upru_yz = np.sum(np.broadcast_to(J_star_t_15, _upru))
+    total_upru_zz = np.sum(np.broadcast_to(J_star_t_16, _upru))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_upru
     # (L2) first moment about the platform origin
@@ -511,61 +512,61 @@ def _prepare(p):
     }
     legs = {
         "upru": {
-            "J_2_xx": np.broadcast_to(J_2_xx, (6,)),
-            "J_2_xy": np.broadcast_to(J_2_xy, (6,)),
-            "J_2_xz": np.broadcast_to(J_2_xz, (6,)),
-            "J_2_yy": np.broadcast_to(J_2_yy, (6,)),
-            "J_2_yz": np.broadcast_to(J_2_yz, (6,)),
-            "J_2_zz": np.broadcast_to(J_2_zz, (6,)),
-            "J_4_xx": np.broadcast_to(J_4_xx, (6,)),
-            "J_4_xy": np.broadcast_to(J_4_xy, (6,)),
-            "J_4_xz": np.broadcast_to(J_4_xz, (6,)),
-            "J_4_yy": np.broadcast_to(J_4_yy, (6,)),
-            "J_4_yz": np.broadcast_to(J_4_yz, (6,)),
-            "J_4_zz": np.broadcast_to(J_4_zz, (6,)),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, (6,)),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, (6,)),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, (6,)),
-            "Sigma_4_xx": np.broadcast_to(Sigma_4_xx, (6,)),
-            "Sigma_4_yy": np.broadcast_to(Sigma_4_yy, (6,)),
-            "Sigma_4_zz": np.broadcast_to(Sigma_4_zz, (6,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (6,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (6,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (6,)),
-            "branch_1": np.broadcast_to(branch_1, (6,)),
-            "branch_2": np.broadcast_to(branch_2, (6,)),
-            "branch_4": np.broadcast_to(branch_4, (6,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (6,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (6,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (6,)),
-            "h_2_x": np.broadcast_to(h_2_x, (6,)),
-            "h_2_y": np.broadcast_to(h_2_y, (6,)),
-            "h_2_z": np.broadcast_to(h_2_z, (6,)),
-            "h_4_x": np.broadcast_to(h_4_x, (6,)),
-            "h_4_y": np.broadcast_to(h_4_y, (6,)),
-            "h_4_z": np.broadcast_to(h_4_z, (6,)),
-            "size": np.broadcast_to(size, (6,)),
-            "size_t_6": np.broadcast_to(size_t_6, (6,)),
-            "upru_base_frame_xx": np.broadcast_to(upru_base_frame_xx, (6,)),
-            "upru_base_frame_xy": np.broadcast_to(upru_base_frame_xy, (6,)),
-            "upru_base_frame_xz": np.broadcast_to(upru_base_frame_xz, (6,)),
-            "upru_base_frame_yx": np.broadcast_to(upru_base_frame_yx, (6,)),
-            "upru_base_frame_yy": np.broadcast_to(upru_base_frame_yy, (6,)),
-            "upru_base_frame_yz": np.broadcast_to(upru_base_frame_yz, (6,)),
-            "upru_base_frame_zx": np.broadcast_to(upru_base_frame_zx, (6,)),
-            "upru_base_frame_zy": np.broadcast_to(upru_base_frame_zy, (6,)),
-            "upru_base_frame_zz": np.broadcast_to(upru_base_frame_zz, (6,)),
-            "upru_base_point_x": np.broadcast_to(upru_base_point_x, (6,)),
-            "upru_base_point_y": np.broadcast_to(upru_base_point_y, (6,)),
-            "upru_base_point_z": np.broadcast_to(upru_base_point_z, (6,)),
-            "upru_link2_mass": np.broadcast_to(upru_link2_mass, (6,)),
-            "upru_link4_mass": np.broadcast_to(upru_link4_mass, (6,)),
-            "upru_platform_joint_axis_platform_x": np.broadcast_to(upru_platform_joint_axis_platform_x, (6,)),
-            "upru_platform_joint_axis_platform_y": np.broadcast_to(upru_platform_joint_axis_platform_y, (6,)),
-            "upru_platform_joint_axis_platform_z": np.broadcast_to(upru_platform_joint_axis_platform_z, (6,)),
-            "upru_platform_point_x": np.broadcast_to(upru_platform_point_x, (6,)),
-            "upru_platform_point_y": np.broadcast_to(upru_platform_point_y, (6,)),
-            "upru_platform_point_z": np.broadcast_to(upru_platform_point_z, (6,)),
+            "J_2_xx": np.broadcast_to(J_2_xx, _upru),
+            "J_2_xy": np.broadcast_to(J_2_xy, _upru),
+            "J_2_xz": np.broadcast_to(J_2_xz, _upru),
+            "J_2_yy": np.broadcast_to(J_2_yy, _upru),
+            "J_2_yz": np.broadcast_to(J_2_yz, _upru),
+            "J_2_zz": np.broadcast_to(J_2_zz, _upru),
+            "J_4_xx": np.broadcast_to(J_4_xx, _upru),
+            "J_4_xy": np.broadcast_to(J_4_xy, _upru),
+            "J_4_xz": np.broadcast_to(J_4_xz, _upru),
+            "J_4_yy": np.broadcast_to(J_4_yy, _upru),
+            "J_4_yz": np.broadcast_to(J_4_yz, _upru),
+            "J_4_zz": np.broadcast_to(J_4_zz, _upru),
+            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _upru),
+            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _upru),
+            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _upru),
+            "Sigma_4_xx": np.broadcast_to(Sigma_4_xx, _upru),
+            "Sigma_4_yy": np.broadcast_to(Sigma_4_yy, _upru),
+            "Sigma_4_zz": np.broadcast_to(Sigma_4_zz, _upru),
+            "b_r0_x": np.broadcast_to(b_r0_x, _upru),
+            "b_r0_y": np.broadcast_to(b_r0_y, _upru),
+            "b_r0_z": np.broadcast_to(b_r0_z, _upru),
+            "branch_1": np.broadcast_to(branch_1, _upru),
+            "branch_2": np.broadcast_to(branch_2, _upru),
+            "branch_4": np.broadcast_to(branch_4, _upru),
+            "g_r0_x": np.broadcast_to(g_r0_x, _upru),
+            "g_r0_y": np.broadcast_to(g_r0_y, _upru),
+            "g_r0_z": np.broadcast_to(g_r0_z, _upru),
+            "h_2_x": np.broadcast_to(h_2_x, _upru),
+            "h_2_y": np.broadcast_to(h_2_y, _upru),
+            "h_2_z": np.broadcast_to(h_2_z, _upru),
+            "h_4_x": np.broadcast_to(h_4_x, _upru),
+            "h_4_y": np.broadcast_to(h_4_y, _upru),
+            "h_4_z": np.broadcast_to(h_4_z, _upru),
+            "size": np.broadcast_to(size, _upru),
+            "size_t_6": np.broadcast_to(size_t_6, _upru),
+            "upru_base_frame_xx": np.broadcast_to(upru_base_frame_xx, _upru),
+            "upru_base_frame_xy": np.broadcast_to(upru_base_frame_xy, _upru),
+            "upru_base_frame_xz": np.broadcast_to(upru_base_frame_xz, _upru),
+            "upru_base_frame_yx": np.broadcast_to(upru_base_frame_yx, _upru),
+            "upru_base_frame_yy": np.broadcast_to(upru_base_frame_yy, _upru),
+            "upru_base_frame_yz": np.broadcast_to(upru_base_frame_yz, _upru),
+            "upru_base_frame_zx": np.broadcast_to(upru_base_frame_zx, _upru),
+            "upru_base_frame_zy": np.broadcast_to(upru_base_frame_zy, _upru),
+            "upru_base_frame_zz": np.broadcast_to(upru_base_frame_zz, _upru),
+            "upru_base_point_x": np.broadcast_to(upru_base_point_x, _upru),
+            "upru_base_point_y": np.broadcast_to(upru_base_point_y, _upru),
+            "upru_base_point_z": np.broadcast_to(upru_base_point_z, _upru),
+            "upru_link2_mass": np.broadcast_to(upru_link2_mass, _upru),
+            "upru_link4_mass": np.broadcast_to(upru_link4_mass, _upru),
+            "upru_platform_joint_axis_platform_x": np.broadcast_to(upru_platform_joint_axis_platform_x, _upru),
+            "upru_platform_joint_axis_platform_y": np.broadcast_to(upru_platform_joint_axis_platform_y, _upru),
+            "upru_platform_joint_axis_platform_z": np.broadcast_to(upru_platform_joint_axis_platform_z, _upru),
+            "upru_platform_point_x": np.broadcast_to(upru_platform_point_x, _upru),
+            "upru_platform_point_y": np.broadcast_to(upru_platform_point_y, _upru),
+            "upru_platform_point_z": np.broadcast_to(upru_platform_point_z, _upru),
         },
     }
     return shared, legs
@@ -4959,7 +4960,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -303,6 +303,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _uhs = (len(_LEGS["uhs"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -473,16 +474,16 @@ def _prepare(p):
     uhs_base_frame_xz*uhs_base_point_x + uhs_base_frame_yz*uhs_base_point_y +
         uhs_base_frame_zz*uhs_base_point_z
     )
-    total_uhs = np.sum(np.broadcast_to(uhs_link3_mass, (6,)))
-    total_uhs_x = np.sum(np.broadcast_to(h_star_t_4, (6,)))
-    total_uhs_y = np.sum(np.broadcast_to(h_star_t_5, (6,)))
-    total_uhs_z = np.sum(np.broadcast_to(h_star_t_6, (6,)))
-    total_uhs_xx = np.sum(np.broadcast_to(J_star_t_11, (6,)))
-    total_uhs_xy = np.sum(np.broadcast_to(J_star_t_12, (6,)))
-    total_uhs_xz = np.sum(np.broadcast_to(J_star_t_13, (6,)))
-    total_uhs_yy = np.sum(np.broadcast_to(J_star_t_14, (6,)))
-    total_uhs_yz = np.sum(np.broadcast_to(J_star_t_15, (6,)))
-    total_uhs_zz = np.sum(np.broadcast_to(J_star_t_16, (6,)))
+    total_uhs = np.sum(np.broadcast_to(uhs_link3_mass, _uhs))
+    total_uhs_x = np.sum(np.broadcast_to(h_star_t_4, _uhs))
+    total_uhs_y = np.sum(np.broadcast_to(h_star_t_5, _uhs))
+    total_uhs_z = np.sum(np.broadcast_to(h_star_t_6, _uhs))
+    total_uhs_xx = np.sum(np.broadcast_to(J_star_t_11, _uhs))
+    total_uhs_xy = np.sum(np.broadcast_to(J_star_t_12, _uhs))
+    total_uhs_xz = np.sum(np.broadcast_to(J_star_t_13, _uhs))
+    total_uhs_yy = np.sum(np.broadcast_to(J_star_t_14, _uhs))
+    total_uhs_yz = np.sum(np.broadcast_to(J_star_t_15, _uhs))
+    total_uhs_zz = np.sum(np.broadcast_to(J_star_t_16, _uhs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_uhs
     # (L2) first moment about the platform origin
@@ -526,61 +527,61 @@ def _prepare(p):
     }
     legs = {
         "uhs": {
-            "J_2_xx": np.broadcast_to(J_2_xx, (6,)),
-            "J_2_xy": np.broadcast_to(J_2_xy, (6,)),
-            "J_2_xz": np.broadcast_to(J_2_xz, (6,)),
-            "J_2_yy": np.broadcast_to(J_2_yy, (6,)),
-            "J_2_yz": np.broadcast_to(J_2_yz, (6,)),
-            "J_2_zz": np.broadcast_to(J_2_zz, (6,)),
-            "J_3_xx": np.broadcast_to(J_3_xx, (6,)),
-            "J_3_xy": np.broadcast_to(J_3_xy, (6,)),
-            "J_3_xz": np.broadcast_to(J_3_xz, (6,)),
-            "J_3_yy": np.broadcast_to(J_3_yy, (6,)),
-            "J_3_yz": np.broadcast_to(J_3_yz, (6,)),
-            "J_3_zz": np.broadcast_to(J_3_zz, (6,)),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, (6,)),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, (6,)),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, (6,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (6,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (6,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (6,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (6,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (6,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (6,)),
-            "branch_1": np.broadcast_to(branch_1, (6,)),
-            "branch_2": np.broadcast_to(branch_2, (6,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (6,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (6,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (6,)),
-            "h_2_x": np.broadcast_to(h_2_x, (6,)),
-            "h_2_y": np.broadcast_to(h_2_y, (6,)),
-            "h_2_z": np.broadcast_to(h_2_z, (6,)),
-            "h_3_x": np.broadcast_to(h_3_x, (6,)),
-            "h_3_y": np.broadcast_to(h_3_y, (6,)),
-            "h_3_z": np.broadcast_to(h_3_z, (6,)),
-            "inv_uhs_joint3_pitch": np.broadcast_to(inv_uhs_joint3_pitch, (6,)),
-            "size": np.broadcast_to(size, (6,)),
-            "size_t_6": np.broadcast_to(size_t_6, (6,)),
-            "uhs_base_frame_xx": np.broadcast_to(uhs_base_frame_xx, (6,)),
-            "uhs_base_frame_xy": np.broadcast_to(uhs_base_frame_xy, (6,)),
-            "uhs_base_frame_xz": np.broadcast_to(uhs_base_frame_xz, (6,)),
-            "uhs_base_frame_yx": np.broadcast_to(uhs_base_frame_yx, (6,)),
-            "uhs_base_frame_yy": np.broadcast_to(uhs_base_frame_yy, (6,)),
-            "uhs_base_frame_yz": np.broadcast_to(uhs_base_frame_yz, (6,)),
-            "uhs_base_frame_zx": np.broadcast_to(uhs_base_frame_zx, (6,)),
-            "uhs_base_frame_zy": np.broadcast_to(uhs_base_frame_zy, (6,)),
-            "uhs_base_frame_zz": np.broadcast_to(uhs_base_frame_zz, (6,)),
-            "uhs_base_point_x": np.broadcast_to(uhs_base_point_x, (6,)),
-            "uhs_base_point_y": np.broadcast_to(uhs_base_point_y, (6,)),
-            "uhs_base_point_z": np.broadcast_to(uhs_base_point_z, (6,)),
-            "uhs_joint3_offset_x": np.broadcast_to(uhs_joint3_offset_x, (6,)),
-            "uhs_joint3_pitch": np.broadcast_to(uhs_joint3_pitch, (6,)),
-            "uhs_link2_mass": np.broadcast_to(uhs_link2_mass, (6,)),
-            "uhs_link3_mass": np.broadcast_to(uhs_link3_mass, (6,)),
-            "uhs_platform_joint_offset_x": np.broadcast_to(uhs_platform_joint_offset_x, (6,)),
-            "uhs_platform_point_x": np.broadcast_to(uhs_platform_point_x, (6,)),
-            "uhs_platform_point_y": np.broadcast_to(uhs_platform_point_y, (6,)),
-            "uhs_platform_point_z": np.broadcast_to(uhs_platform_point_z, (6,)),
+            "J_2_xx": np.broadcast_to(J_2_xx, _uhs),
+            "J_2_xy": np.broadcast_to(J_2_xy, _uhs),
+            "J_2_xz": np.broadcast_to(J_2_xz, _uhs),
+            "J_2_yy": np.broadcast_to(J_2_yy, _uhs),
+            "J_2_yz": np.broadcast_to(J_2_yz, _uhs),
+            "J_2_zz": np.broadcast_to(J_2_zz, _uhs),
+            "J_3_xx": np.broadcast_to(J_3_xx, _uhs),
+            "J_3_xy": np.broadcast_to(J_3_xy, _uhs),
+            "J_3_xz": np.broadcast_to(J_3_xz, _uhs),
+            "J_3_yy": np.broadcast_to(J_3_yy, _uhs),
+            "J_3_yz": np.broadcast_to(J_3_yz, _uhs),
+            "J_3_zz": np.broadcast_to(J_3_zz, _uhs),
+            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _uhs),
+            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _uhs),
+            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _uhs),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _uhs),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _uhs),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _uhs),
+            "b_r0_x": np.broadcast_to(b_r0_x, _uhs),
+            "b_r0_y": np.broadcast_to(b_r0_y, _uhs),
+            "b_r0_z": np.broadcast_to(b_r0_z, _uhs),
+            "branch_1": np.broadcast_to(branch_1, _uhs),
+            "branch_2": np.broadcast_to(branch_2, _uhs),
+            "g_r0_x": np.broadcast_to(g_r0_x, _uhs),
+            "g_r0_y": np.broadcast_to(g_r0_y, _uhs),
+            "g_r0_z": np.broadcast_to(g_r0_z, _uhs),
+            "h_2_x": np.broadcast_to(h_2_x, _uhs),
+            "h_2_y": np.broadcast_to(h_2_y, _uhs),
+            "h_2_z": np.broadcast_to(h_2_z, _uhs),
+            "h_3_x": np.broadcast_to(h_3_x, _uhs),
+            "h_3_y": np.broadcast_to(h_3_y, _uhs),
+            "h_3_z": np.broadcast_to(h_3_z, _uhs),
+            "inv_uhs_joint3_pitch": np.broadcast_to(inv_uhs_joint3_pitch, _uhs),
+            "size": np.broadcast_to(size, _uhs),
+            "size_t_6": np.broadcast_to(size_t_6, _uhs),
+            "uhs_base_frame_xx": np.broadcast_to(uhs_base_frame_xx, _uhs),
+            "uhs_base_frame_xy": np.broadcast_to(uhs_base_frame_xy, _uhs),
+            "uhs_base_frame_xz": np.broadcast_to(uhs_base_frame_xz, _uhs),
+            "uhs_base_frame_yx": np.broadcast_to(uhs_base_frame_yx, _uhs),
+            "uhs_base_frame_yy": np.broadcast_to(uhs_base_frame_yy, _uhs),
+            "uhs_base_frame_yz": np.broadcast_to(uhs_base_frame_yz, _uhs),
+            "uhs_base_frame_zx": np.broadcast_to(uhs_base_frame_zx, _uhs),
+            "uhs_base_frame_zy": np.broadcast_to(uhs_base_frame_zy, _uhs),
+            "uhs_base_frame_zz": np.broadcast_to(uhs_base_frame_zz, _uhs),
+            "uhs_base_point_x": np.broadcast_to(uhs_base_point_x, _uhs),
+            "uhs_base_point_y": np.broadcast_to(uhs_base_point_y, _uhs),
+            "uhs_base_point_z": np.broadcast_to(uhs_base_point_z, _uhs),
+            "uhs_joint3_offset_x": np.broadcast_to(uhs_joint3_offset_x, _uhs),
+            "uhs_joint3_pitch": np.broadcast_to(uhs_joint3_pitch, _uhs),
+            "uhs_link2_mass": np.broadcast_to(uhs_link2_mass, _uhs),
+            "uhs_link3_mass": np.broadcast_to(uhs_link3_mass, _uhs),
+            "uhs_platform_joint_offset_x": np.broadcast_to(uhs_platform_joint_offset_x, _uhs),
+            "uhs_platform_point_x": np.broadcast_to(uhs_platform_point_x, _uhs),
+            "uhs_platform_point_y": np.broadcast_to(uhs_platform_point_y, _uhs),
+            "uhs_platform_point_z": np.broadcast_to(uhs_platform_point_z, _uhs),
         },
     }
     return shared, legs
@@ -3980,7 +3981,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -421,6 +421,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrrrrr = (len(_LEGS["rrrrrr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -699,16 +700,16 @@ def _prepare(p):
     rrrrrr_base_frame_xx*rrrrrr_base_point_x + rrrrrr_base_frame_yx*rrrrrr_base_point_y +
         rrrrrr_base_frame_zx*rrrrrr_base_point_z
     )
-    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, (6,)))
-    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, (6,)))
-    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, (6,)))
-    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, (6,)))
-    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_11, (6,)))
-    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_12, (6,)))
-    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_13, (6,)))
-    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_14, (6,)))
-    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_15, (6,)))
-    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_16, (6,)))
+    total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, _rrrrrr))
+    total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrrr))
+    total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrrr))
+    total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrrr))
+    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrrrrr))
+    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_12, _rrrrrr))
+    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_13, _rrrrrr))
+    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_14, _rrrrrr))
+    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_15, _rrrrrr))
+    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_16, _rrrrrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrrr
     # (L2) first moment about the platform origin
@@ -752,93 +753,93 @@ def _prepare(p):
     }
     legs = {
         "rrrrrr": {
-            "J_1_xx": np.broadcast_to(J_1_xx, (6,)),
-            "J_2_xx": np.broadcast_to(J_2_xx, (6,)),
-            "J_2_xy": np.broadcast_to(J_2_xy, (6,)),
-            "J_2_xz": np.broadcast_to(J_2_xz, (6,)),
-            "J_2_yy": np.broadcast_to(J_2_yy, (6,)),
-            "J_2_yz": np.broadcast_to(J_2_yz, (6,)),
-            "J_2_zz": np.broadcast_to(J_2_zz, (6,)),
-            "J_3_xx": np.broadcast_to(J_3_xx, (6,)),
-            "J_3_xy": np.broadcast_to(J_3_xy, (6,)),
-            "J_3_xz": np.broadcast_to(J_3_xz, (6,)),
-            "J_3_yy": np.broadcast_to(J_3_yy, (6,)),
-            "J_3_yz": np.broadcast_to(J_3_yz, (6,)),
-            "J_3_zz": np.broadcast_to(J_3_zz, (6,)),
-            "J_4_xx": np.broadcast_to(J_4_xx, (6,)),
-            "J_4_xy": np.broadcast_to(J_4_xy, (6,)),
-            "J_4_xz": np.broadcast_to(J_4_xz, (6,)),
-            "J_4_yy": np.broadcast_to(J_4_yy, (6,)),
-            "J_4_yz": np.broadcast_to(J_4_yz, (6,)),
-            "J_4_zz": np.broadcast_to(J_4_zz, (6,)),
-            "J_5_xx": np.broadcast_to(J_5_xx, (6,)),
-            "J_5_xy": np.broadcast_to(J_5_xy, (6,)),
-            "J_5_xz": np.broadcast_to(J_5_xz, (6,)),
-            "J_5_yy": np.broadcast_to(J_5_yy, (6,)),
-            "J_5_yz": np.broadcast_to(J_5_yz, (6,)),
-            "J_5_zz": np.broadcast_to(J_5_zz, (6,)),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, (6,)),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, (6,)),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, (6,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (6,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (6,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (6,)),
-            "Sigma_4_xx": np.broadcast_to(Sigma_4_xx, (6,)),
-            "Sigma_4_yy": np.broadcast_to(Sigma_4_yy, (6,)),
-            "Sigma_4_zz": np.broadcast_to(Sigma_4_zz, (6,)),
-            "Sigma_5_xx": np.broadcast_to(Sigma_5_xx, (6,)),
-            "Sigma_5_yy": np.broadcast_to(Sigma_5_yy, (6,)),
-            "Sigma_5_zz": np.broadcast_to(Sigma_5_zz, (6,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (6,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (6,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (6,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (6,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (6,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (6,)),
-            "h_1_x": np.broadcast_to(h_1_x, (6,)),
-            "h_1_y": np.broadcast_to(h_1_y, (6,)),
-            "h_1_z": np.broadcast_to(h_1_z, (6,)),
-            "h_2_x": np.broadcast_to(h_2_x, (6,)),
-            "h_2_y": np.broadcast_to(h_2_y, (6,)),
-            "h_2_z": np.broadcast_to(h_2_z, (6,)),
-            "h_3_x": np.broadcast_to(h_3_x, (6,)),
-            "h_3_y": np.broadcast_to(h_3_y, (6,)),
-            "h_3_z": np.broadcast_to(h_3_z, (6,)),
-            "h_4_x": np.broadcast_to(h_4_x, (6,)),
-            "h_4_y": np.broadcast_to(h_4_y, (6,)),
-            "h_4_z": np.broadcast_to(h_4_z, (6,)),
-            "h_5_x": np.broadcast_to(h_5_x, (6,)),
-            "h_5_y": np.broadcast_to(h_5_y, (6,)),
-            "h_5_z": np.broadcast_to(h_5_z, (6,)),
-            "rrrrrr_base_frame_xx": np.broadcast_to(rrrrrr_base_frame_xx, (6,)),
-            "rrrrrr_base_frame_xy": np.broadcast_to(rrrrrr_base_frame_xy, (6,)),
-            "rrrrrr_base_frame_xz": np.broadcast_to(rrrrrr_base_frame_xz, (6,)),
-            "rrrrrr_base_frame_yx": np.broadcast_to(rrrrrr_base_frame_yx, (6,)),
-            "rrrrrr_base_frame_yy": np.broadcast_to(rrrrrr_base_frame_yy, (6,)),
-            "rrrrrr_base_frame_yz": np.broadcast_to(rrrrrr_base_frame_yz, (6,)),
-            "rrrrrr_base_frame_zx": np.broadcast_to(rrrrrr_base_frame_zx, (6,)),
-            "rrrrrr_base_frame_zy": np.broadcast_to(rrrrrr_base_frame_zy, (6,)),
-            "rrrrrr_base_frame_zz": np.broadcast_to(rrrrrr_base_frame_zz, (6,)),
-            "rrrrrr_base_point_x": np.broadcast_to(rrrrrr_base_point_x, (6,)),
-            "rrrrrr_base_point_y": np.broadcast_to(rrrrrr_base_point_y, (6,)),
-            "rrrrrr_base_point_z": np.broadcast_to(rrrrrr_base_point_z, (6,)),
-            "rrrrrr_joint2_offset_x": np.broadcast_to(rrrrrr_joint2_offset_x, (6,)),
-            "rrrrrr_joint3_offset_x": np.broadcast_to(rrrrrr_joint3_offset_x, (6,)),
-            "rrrrrr_joint4_offset_x": np.broadcast_to(rrrrrr_joint4_offset_x, (6,)),
-            "rrrrrr_joint5_offset_x": np.broadcast_to(rrrrrr_joint5_offset_x, (6,)),
-            "rrrrrr_link1_mass": np.broadcast_to(rrrrrr_link1_mass, (6,)),
-            "rrrrrr_link2_mass": np.broadcast_to(rrrrrr_link2_mass, (6,)),
-            "rrrrrr_link3_mass": np.broadcast_to(rrrrrr_link3_mass, (6,)),
-            "rrrrrr_link4_mass": np.broadcast_to(rrrrrr_link4_mass, (6,)),
-            "rrrrrr_link5_mass": np.broadcast_to(rrrrrr_link5_mass, (6,)),
-            "rrrrrr_platform_joint_axis_platform_x": np.broadcast_to(rrrrrr_platform_joint_axis_platform_x, (6,)),
-            "rrrrrr_platform_joint_axis_platform_y": np.broadcast_to(rrrrrr_platform_joint_axis_platform_y, (6,)),
-            "rrrrrr_platform_joint_axis_platform_z": np.broadcast_to(rrrrrr_platform_joint_axis_platform_z, (6,)),
-            "rrrrrr_platform_joint_offset_x": np.broadcast_to(rrrrrr_platform_joint_offset_x, (6,)),
-            "rrrrrr_platform_point_x": np.broadcast_to(rrrrrr_platform_point_x, (6,)),
-            "rrrrrr_platform_point_y": np.broadcast_to(rrrrrr_platform_point_y, (6,)),
-            "rrrrrr_platform_point_z": np.broadcast_to(rrrrrr_platform_point_z, (6,)),
-            "w_1_t": np.broadcast_to(w_1_t, (6,)),
+            "J_1_xx": np.broadcast_to(J_1_xx, _rrrrrr),
+            "J_2_xx": np.broadcast_to(J_2_xx, _rrrrrr),
+            "J_2_xy": np.broadcast_to(J_2_xy, _rrrrrr),
+            "J_2_xz": np.broadcast_to(J_2_xz, _rrrrrr),
+            "J_2_yy": np.broadcast_to(J_2_yy, _rrrrrr),
+            "J_2_yz": np.broadcast_to(J_2_yz, _rrrrrr),
+            "J_2_zz": np.broadcast_to(J_2_zz, _rrrrrr),
+            "J_3_xx": np.broadcast_to(J_3_xx, _rrrrrr),
+            "J_3_xy": np.broadcast_to(J_3_xy, _rrrrrr),
+            "J_3_xz": np.broadcast_to(J_3_xz, _rrrrrr),
+            "J_3_yy": np.broadcast_to(J_3_yy, _rrrrrr),
+            "J_3_yz": np.broadcast_to(J_3_yz, _rrrrrr),
+            "J_3_zz": np.broadcast_to(J_3_zz, _rrrrrr),
+            "J_4_xx": np.broadcast_to(J_4_xx, _rrrrrr),
+            "J_4_xy": np.broadcast_to(J_4_xy, _rrrrrr),
+            "J_4_xz": np.broadcast_to(J_4_xz, _rrrrrr),
+            "J_4_yy": np.broadcast_to(J_4_yy, _rrrrrr),
+            "J_4_yz": np.broadcast_to(J_4_yz, _rrrrrr),
+            "J_4_zz": np.broadcast_to(J_4_zz, _rrrrrr),
+            "J_5_xx": np.broadcast_to(J_5_xx, _rrrrrr),
+            "J_5_xy": np.broadcast_to(J_5_xy, _rrrrrr),
+            "J_5_xz": np.broadcast_to(J_5_xz, _rrrrrr),
+            "J_5_yy": np.broadcast_to(J_5_yy, _rrrrrr),
+            "J_5_yz": np.broadcast_to(J_5_yz, _rrrrrr),
+            "J_5_zz": np.broadcast_to(J_5_zz, _rrrrrr),
+            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _rrrrrr),
+            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _rrrrrr),
+            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _rrrrrr),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _rrrrrr),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _rrrrrr),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _rrrrrr),
+            "Sigma_4_xx": np.broadcast_to(Sigma_4_xx, _rrrrrr),
+            "Sigma_4_yy": np.broadcast_to(Sigma_4_yy, _rrrrrr),
+            "Sigma_4_zz": np.broadcast_to(Sigma_4_zz, _rrrrrr),
+            "Sigma_5_xx": np.broadcast_to(Sigma_5_xx, _rrrrrr),
+            "Sigma_5_yy": np.broadcast_to(Sigma_5_yy, _rrrrrr),
+            "Sigma_5_zz": np.broadcast_to(Sigma_5_zz, _rrrrrr),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rrrrrr),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rrrrrr),
+            "b_r0_z": np.broadcast_to(b_r0_z, _rrrrrr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rrrrrr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rrrrrr),
+            "g_r0_z": np.broadcast_to(g_r0_z, _rrrrrr),
+            "h_1_x": np.broadcast_to(h_1_x, _rrrrrr),
+            "h_1_y": np.broadcast_to(h_1_y, _rrrrrr),
+            "h_1_z": np.broadcast_to(h_1_z, _rrrrrr),
+            "h_2_x": np.broadcast_to(h_2_x, _rrrrrr),
+            "h_2_y": np.broadcast_to(h_2_y, _rrrrrr),
+            "h_2_z": np.broadcast_to(h_2_z, _rrrrrr),
+            "h_3_x": np.broadcast_to(h_3_x, _rrrrrr),
+            "h_3_y": np.broadcast_to(h_3_y, _rrrrrr),
+            "h_3_z": np.broadcast_to(h_3_z, _rrrrrr),
+            "h_4_x": np.broadcast_to(h_4_x, _rrrrrr),
+            "h_4_y": np.broadcast_to(h_4_y, _rrrrrr),
+            "h_4_z": np.broadcast_to(h_4_z, _rrrrrr),
+            "h_5_x": np.broadcast_to(h_5_x, _rrrrrr),
+            "h_5_y": np.broadcast_to(h_5_y, _rrrrrr),
+            "h_5_z": np.broadcast_to(h_5_z, _rrrrrr),
+            "rrrrrr_base_frame_xx": np.broadcast_to(rrrrrr_base_frame_xx, _rrrrrr),
+            "rrrrrr_base_frame_xy": np.broadcast_to(rrrrrr_base_frame_xy, _rrrrrr),
+            "rrrrrr_base_frame_xz": np.broadcast_to(rrrrrr_base_frame_xz, _rrrrrr),
+            "rrrrrr_base_frame_yx": np.broadcast_to(rrrrrr_base_frame_yx, _rrrrrr),
+            "rrrrrr_base_frame_yy": np.broadcast_to(rrrrrr_base_frame_yy, _rrrrrr),
+            "rrrrrr_base_frame_yz": np.broadcast_to(rrrrrr_base_frame_yz, _rrrrrr),
+            "rrrrrr_base_frame_zx": np.broadcast_to(rrrrrr_base_frame_zx, _rrrrrr),
+            "rrrrrr_base_frame_zy": np.broadcast_to(rrrrrr_base_frame_zy, _rrrrrr),
+            "rrrrrr_base_frame_zz": np.broadcast_to(rrrrrr_base_frame_zz, _rrrrrr),
+            "rrrrrr_base_point_x": np.broadcast_to(rrrrrr_base_point_x, _rrrrrr),
+            "rrrrrr_base_point_y": np.broadcast_to(rrrrrr_base_point_y, _rrrrrr),
+            "rrrrrr_base_point_z": np.broadcast_to(rrrrrr_base_point_z, _rrrrrr),
+            "rrrrrr_joint2_offset_x": np.broadcast_to(rrrrrr_joint2_offset_x, _rrrrrr),
+            "rrrrrr_joint3_offset_x": np.broadcast_to(rrrrrr_joint3_offset_x, _rrrrrr),
+            "rrrrrr_joint4_offset_x": np.broadcast_to(rrrrrr_joint4_offset_x, _rrrrrr),
+            "rrrrrr_joint5_offset_x": np.broadcast_to(rrrrrr_joint5_offset_x, _rrrrrr),
+            "rrrrrr_link1_mass": np.broadcast_to(rrrrrr_link1_mass, _rrrrrr),
+            "rrrrrr_link2_mass": np.broadcast_to(rrrrrr_link2_mass, _rrrrrr),
+            "rrrrrr_link3_mass": np.broadcast_to(rrrrrr_link3_mass, _rrrrrr),
+            "rrrrrr_link4_mass": np.broadcast_to(rrrrrr_link4_mass, _rrrrrr),
+            "rrrrrr_link5_mass": np.broadcast_to(rrrrrr_link5_mass, _rrrrrr),
+            "rrrrrr_platform_joint_axis_platform_x": np.broadcast_to(rrrrrr_platform_joint_axis_platform_x, _rrrrrr),
+            "rrrrrr_platform_joint_axis_platform_y": np.broadcast_to(rrrrrr_platform_joint_axis_platform_y, _rrrrrr),
+            "rrrrrr_platform_joint_axis_platform_z": np.broadcast_to(rrrrrr_platform_joint_axis_platform_z, _rrrrrr),
+            "rrrrrr_platform_joint_offset_x": np.broadcast_to(rrrrrr_platform_joint_offset_x, _rrrrrr),
+            "rrrrrr_platform_point_x": np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr),
+            "rrrrrr_platform_point_y": np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr),
+            "rrrrrr_platform_point_z": np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr),
+            "w_1_t": np.broadcast_to(w_1_t, _rrrrrr),
         },
     }
     return shared, legs
@@ -10305,7 +10306,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None, q0=None):
 
 
 def complete_acceleration(X, V, A, p=None, q0=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -260,6 +260,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rprs = (len(_LEGS["rprs"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -407,16 +408,16 @@ def _prepare(p):
     rprs_base_frame_xx*rprs_base_point_x + rprs_base_frame_yx*rprs_base_point_y +
         rprs_base_frame_zx*rprs_base_point_z
     )
-    total_rprs = np.sum(np.broadcast_to(rprs_link3_mass, (3,)))
-    total_rprs_x = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_rprs_y = np.sum(np.broadcast_to(h_star_t_5, (3,)))
-    total_rprs_z = np.sum(np.broadcast_to(h_star_t_6, (3,)))
-    total_rprs_xx = np.sum(np.broadcast_to(J_star_t_11, (3,)))
-    total_rprs_xy = np.sum(np.broadcast_to(J_star_t_12, (3,)))
-    total_rprs_xz = np.sum(np.broadcast_to(J_star_t_13, (3,)))
-    total_rprs_yy = np.sum(np.broadcast_to(J_star_t_14, (3,)))
-    total_rprs_yz = np.sum(np.broadcast_to(J_star_t_15, (3,)))
-    total_rprs_zz = np.sum(np.broadcast_to(J_star_t_16, (3,)))
+    total_rprs = np.sum(np.broadcast_to(rprs_link3_mass, _rprs))
+    total_rprs_x = np.sum(np.broadcast_to(h_star_t_4, _rprs))
+    total_rprs_y = np.sum(np.broadcast_to(h_star_t_5, _rprs))
+    total_rprs_z = np.sum(np.broadcast_to(h_star_t_6, _rprs))
+    total_rprs_xx = np.sum(np.broadcast_to(J_star_t_11, _rprs))
+    total_rprs_xy = np.sum(np.broadcast_to(J_star_t_12, _rprs))
+    total_rprs_xz = np.sum(np.broadcast_to(J_star_t_13, _rprs))
+    total_rprs_yy = np.sum(np.broadcast_to(J_star_t_14, _rprs))
+    total_rprs_yz = np.sum(np.broadcast_to(J_star_t_15, _rprs))
+    total_rprs_zz = np.sum(np.broadcast_to(J_star_t_16, _rprs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rprs
     # (L2) first moment about the platform origin
@@ -460,53 +461,53 @@ def _prepare(p):
     }
     legs = {
         "rprs": {
-            "J_2_xx": np.broadcast_to(J_2_xx, (3,)),
-            "J_3_xx": np.broadcast_to(J_3_xx, (3,)),
-            "J_3_xy": np.broadcast_to(J_3_xy, (3,)),
-            "J_3_xz": np.broadcast_to(J_3_xz, (3,)),
-            "J_3_yy": np.broadcast_to(J_3_yy, (3,)),
-            "J_3_yz": np.broadcast_to(J_3_yz, (3,)),
-            "J_3_zz": np.broadcast_to(J_3_zz, (3,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (3,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (3,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (3,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "branch_2": np.broadcast_to(branch_2, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "h_2_z": np.broadcast_to(h_2_z, (3,)),
-            "h_3_x": np.broadcast_to(h_3_x, (3,)),
-            "h_3_y": np.broadcast_to(h_3_y, (3,)),
-            "h_3_z": np.broadcast_to(h_3_z, (3,)),
-            "inv_size_t_6": np.broadcast_to(inv_size_t_6, (3,)),
-            "rprs_base_frame_xx": np.broadcast_to(rprs_base_frame_xx, (3,)),
-            "rprs_base_frame_xy": np.broadcast_to(rprs_base_frame_xy, (3,)),
-            "rprs_base_frame_xz": np.broadcast_to(rprs_base_frame_xz, (3,)),
-            "rprs_base_frame_yx": np.broadcast_to(rprs_base_frame_yx, (3,)),
-            "rprs_base_frame_yy": np.broadcast_to(rprs_base_frame_yy, (3,)),
-            "rprs_base_frame_yz": np.broadcast_to(rprs_base_frame_yz, (3,)),
-            "rprs_base_frame_zx": np.broadcast_to(rprs_base_frame_zx, (3,)),
-            "rprs_base_frame_zy": np.broadcast_to(rprs_base_frame_zy, (3,)),
-            "rprs_base_frame_zz": np.broadcast_to(rprs_base_frame_zz, (3,)),
-            "rprs_base_point_x": np.broadcast_to(rprs_base_point_x, (3,)),
-            "rprs_base_point_y": np.broadcast_to(rprs_base_point_y, (3,)),
-            "rprs_base_point_z": np.broadcast_to(rprs_base_point_z, (3,)),
-            "rprs_joint3_offset_x": np.broadcast_to(rprs_joint3_offset_x, (3,)),
-            "rprs_link2_mass": np.broadcast_to(rprs_link2_mass, (3,)),
-            "rprs_link3_mass": np.broadcast_to(rprs_link3_mass, (3,)),
-            "rprs_platform_joint_offset_x": np.broadcast_to(rprs_platform_joint_offset_x, (3,)),
-            "rprs_platform_point_x": np.broadcast_to(rprs_platform_point_x, (3,)),
-            "rprs_platform_point_y": np.broadcast_to(rprs_platform_point_y, (3,)),
-            "rprs_platform_point_z": np.broadcast_to(rprs_platform_point_z, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "size_t_2": np.broadcast_to(size_t_2, (3,)),
-            "size_t_7": np.broadcast_to(size_t_7, (3,)),
+            "J_2_xx": np.broadcast_to(J_2_xx, _rprs),
+            "J_3_xx": np.broadcast_to(J_3_xx, _rprs),
+            "J_3_xy": np.broadcast_to(J_3_xy, _rprs),
+            "J_3_xz": np.broadcast_to(J_3_xz, _rprs),
+            "J_3_yy": np.broadcast_to(J_3_yy, _rprs),
+            "J_3_yz": np.broadcast_to(J_3_yz, _rprs),
+            "J_3_zz": np.broadcast_to(J_3_zz, _rprs),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _rprs),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _rprs),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _rprs),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rprs),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rprs),
+            "b_r0_z": np.broadcast_to(b_r0_z, _rprs),
+            "branch_1": np.broadcast_to(branch_1, _rprs),
+            "branch_2": np.broadcast_to(branch_2, _rprs),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rprs),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rprs),
+            "g_r0_z": np.broadcast_to(g_r0_z, _rprs),
+            "h_2_x": np.broadcast_to(h_2_x, _rprs),
+            "h_2_y": np.broadcast_to(h_2_y, _rprs),
+            "h_2_z": np.broadcast_to(h_2_z, _rprs),
+            "h_3_x": np.broadcast_to(h_3_x, _rprs),
+            "h_3_y": np.broadcast_to(h_3_y, _rprs),
+            "h_3_z": np.broadcast_to(h_3_z, _rprs),
+            "inv_size_t_6": np.broadcast_to(inv_size_t_6, _rprs),
+            "rprs_base_frame_xx": np.broadcast_to(rprs_base_frame_xx, _rprs),
+            "rprs_base_frame_xy": np.broadcast_to(rprs_base_frame_xy, _rprs),
+            "rprs_base_frame_xz": np.broadcast_to(rprs_base_frame_xz, _rprs),
+            "rprs_base_frame_yx": np.broadcast_to(rprs_base_frame_yx, _rprs),
+            "rprs_base_frame_yy": np.broadcast_to(rprs_base_frame_yy, _rprs),
+            "rprs_base_frame_yz": np.broadcast_to(rprs_base_frame_yz, _rprs),
+            "rprs_base_frame_zx": np.broadcast_to(rprs_base_frame_zx, _rprs),
+            "rprs_base_frame_zy": np.broadcast_to(rprs_base_frame_zy, _rprs),
+            "rprs_base_frame_zz": np.broadcast_to(rprs_base_frame_zz, _rprs),
+            "rprs_base_point_x": np.broadcast_to(rprs_base_point_x, _rprs),
+            "rprs_base_point_y": np.broadcast_to(rprs_base_point_y, _rprs),
+            "rprs_base_point_z": np.broadcast_to(rprs_base_point_z, _rprs),
+            "rprs_joint3_offset_x": np.broadcast_to(rprs_joint3_offset_x, _rprs),
+            "rprs_link2_mass": np.broadcast_to(rprs_link2_mass, _rprs),
+            "rprs_link3_mass": np.broadcast_to(rprs_link3_mass, _rprs),
+            "rprs_platform_joint_offset_x": np.broadcast_to(rprs_platform_joint_offset_x, _rprs),
+            "rprs_platform_point_x": np.broadcast_to(rprs_platform_point_x, _rprs),
+            "rprs_platform_point_y": np.broadcast_to(rprs_platform_point_y, _rprs),
+            "rprs_platform_point_z": np.broadcast_to(rprs_platform_point_z, _rprs),
+            "size": np.broadcast_to(size, _rprs),
+            "size_t_2": np.broadcast_to(size_t_2, _rprs),
+            "size_t_7": np.broadcast_to(size_t_7, _rprs),
         },
     }
     return shared, legs
@@ -3717,7 +3718,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -266,6 +266,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prps = (len(_LEGS["prps"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -418,16 +419,16 @@ def _prepare(p):
     potential_t_2 = b_r0_y*prps_link1_mass
     potential_t_3 = b_r0_x*prps_link2_mass
     potential_t_4 = b_r0_y*prps_link2_mass
-    total_prps = np.sum(np.broadcast_to(prps_link3_mass, (3,)))
-    total_prps_x = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_prps_y = np.sum(np.broadcast_to(h_star_t_5, (3,)))
-    total_prps_z = np.sum(np.broadcast_to(h_star_t_6, (3,)))
-    total_prps_xx = np.sum(np.broadcast_to(J_star_t_11, (3,)))
-    total_prps_xy = np.sum(np.broadcast_to(J_star_t_12, (3,)))
-    total_prps_xz = np.sum(np.broadcast_to(J_star_t_13, (3,)))
-    total_prps_yy = np.sum(np.broadcast_to(J_star_t_14, (3,)))
-    total_prps_yz = np.sum(np.broadcast_to(J_star_t_15, (3,)))
-    total_prps_zz = np.sum(np.broadcast_to(J_star_t_16, (3,)))
+    total_prps = np.sum(np.broadcast_to(prps_link3_mass, _prps))
+    total_prps_x = np.sum(np.broadcast_to(h_star_t_4, _prps))
+    total_prps_y = np.sum(np.broadcast_to(h_star_t_5, _prps))
+    total_prps_z = np.sum(np.broadcast_to(h_star_t_6, _prps))
+    total_prps_xx = np.sum(np.broadcast_to(J_star_t_11, _prps))
+    total_prps_xy = np.sum(np.broadcast_to(J_star_t_12, _prps))
+    total_prps_xz = np.sum(np.broadcast_to(J_star_t_13, _prps))
+    total_prps_yy = np.sum(np.broadcast_to(J_star_t_14, _prps))
+    total_prps_yz = np.sum(np.broadcast_to(J_star_t_15, _prps))
+    total_prps_zz = np.sum(np.broadcast_to(J_star_t_16, _prps))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prps
     # (L2) first moment about the platform origin
@@ -471,54 +472,54 @@ def _prepare(p):
     }
     legs = {
         "prps": {
-            "J_group_2_zz": np.broadcast_to(J_group_2_zz, (3,)),
-            "Q_t_10": np.broadcast_to(Q_t_10, (3,)),
-            "Q_t_11": np.broadcast_to(Q_t_11, (3,)),
-            "Q_t_12": np.broadcast_to(Q_t_12, (3,)),
-            "Q_t_13": np.broadcast_to(Q_t_13, (3,)),
-            "Q_t_5": np.broadcast_to(Q_t_5, (3,)),
-            "Q_t_6": np.broadcast_to(Q_t_6, (3,)),
-            "Q_t_7": np.broadcast_to(Q_t_7, (3,)),
-            "Q_t_8": np.broadcast_to(Q_t_8, (3,)),
-            "Q_t_9": np.broadcast_to(Q_t_9, (3,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (3,)),
-            "branch_2": np.broadcast_to(branch_2, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_1_z": np.broadcast_to(h_1_z, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "h_2_z": np.broadcast_to(h_2_z, (3,)),
-            "h_3_x": np.broadcast_to(h_3_x, (3,)),
-            "h_3_y": np.broadcast_to(h_3_y, (3,)),
-            "h_3_z": np.broadcast_to(h_3_z, (3,)),
-            "potential_t": np.broadcast_to(potential_t, (3,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (3,)),
-            "potential_t_3": np.broadcast_to(potential_t_3, (3,)),
-            "potential_t_4": np.broadcast_to(potential_t_4, (3,)),
-            "prps_base_frame_xx": np.broadcast_to(prps_base_frame_xx, (3,)),
-            "prps_base_frame_xy": np.broadcast_to(prps_base_frame_xy, (3,)),
-            "prps_base_frame_xz": np.broadcast_to(prps_base_frame_xz, (3,)),
-            "prps_base_frame_yx": np.broadcast_to(prps_base_frame_yx, (3,)),
-            "prps_base_frame_yy": np.broadcast_to(prps_base_frame_yy, (3,)),
-            "prps_base_frame_yz": np.broadcast_to(prps_base_frame_yz, (3,)),
-            "prps_base_frame_zx": np.broadcast_to(prps_base_frame_zx, (3,)),
-            "prps_base_frame_zy": np.broadcast_to(prps_base_frame_zy, (3,)),
-            "prps_base_frame_zz": np.broadcast_to(prps_base_frame_zz, (3,)),
-            "prps_base_point_x": np.broadcast_to(prps_base_point_x, (3,)),
-            "prps_base_point_y": np.broadcast_to(prps_base_point_y, (3,)),
-            "prps_base_point_z": np.broadcast_to(prps_base_point_z, (3,)),
-            "prps_link1_mass": np.broadcast_to(prps_link1_mass, (3,)),
-            "prps_link2_mass": np.broadcast_to(prps_link2_mass, (3,)),
-            "prps_link3_mass": np.broadcast_to(prps_link3_mass, (3,)),
-            "prps_platform_point_x": np.broadcast_to(prps_platform_point_x, (3,)),
-            "prps_platform_point_y": np.broadcast_to(prps_platform_point_y, (3,)),
-            "prps_platform_point_z": np.broadcast_to(prps_platform_point_z, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "size_t_6": np.broadcast_to(size_t_6, (3,)),
+            "J_group_2_zz": np.broadcast_to(J_group_2_zz, _prps),
+            "Q_t_10": np.broadcast_to(Q_t_10, _prps),
+            "Q_t_11": np.broadcast_to(Q_t_11, _prps),
+            "Q_t_12": np.broadcast_to(Q_t_12, _prps),
+            "Q_t_13": np.broadcast_to(Q_t_13, _prps),
+            "Q_t_5": np.broadcast_to(Q_t_5, _prps),
+            "Q_t_6": np.broadcast_to(Q_t_6, _prps),
+            "Q_t_7": np.broadcast_to(Q_t_7, _prps),
+            "Q_t_8": np.broadcast_to(Q_t_8, _prps),
+            "Q_t_9": np.broadcast_to(Q_t_9, _prps),
+            "b_r0_z": np.broadcast_to(b_r0_z, _prps),
+            "branch_2": np.broadcast_to(branch_2, _prps),
+            "g_r0_x": np.broadcast_to(g_r0_x, _prps),
+            "g_r0_y": np.broadcast_to(g_r0_y, _prps),
+            "g_r0_z": np.broadcast_to(g_r0_z, _prps),
+            "h_1_x": np.broadcast_to(h_1_x, _prps),
+            "h_1_y": np.broadcast_to(h_1_y, _prps),
+            "h_1_z": np.broadcast_to(h_1_z, _prps),
+            "h_2_x": np.broadcast_to(h_2_x, _prps),
+            "h_2_y": np.broadcast_to(h_2_y, _prps),
+            "h_2_z": np.broadcast_to(h_2_z, _prps),
+            "h_3_x": np.broadcast_to(h_3_x, _prps),
+            "h_3_y": np.broadcast_to(h_3_y, _prps),
+            "h_3_z": np.broadcast_to(h_3_z, _prps),
+            "potential_t": np.broadcast_to(potential_t, _prps),
+            "potential_t_2": np.broadcast_to(potential_t_2, _prps),
+            "potential_t_3": np.broadcast_to(potential_t_3, _prps),
+            "potential_t_4": np.broadcast_to(potential_t_4, _prps),
+            "prps_base_frame_xx": np.broadcast_to(prps_base_frame_xx, _prps),
+            "prps_base_frame_xy": np.broadcast_to(prps_base_frame_xy, _prps),
+            "prps_base_frame_xz": np.broadcast_to(prps_base_frame_xz, _prps),
+            "prps_base_frame_yx": np.broadcast_to(prps_base_frame_yx, _prps),
+            "prps_base_frame_yy": np.broadcast_to(prps_base_frame_yy, _prps),
+            "prps_base_frame_yz": np.broadcast_to(prps_base_frame_yz, _prps),
+            "prps_base_frame_zx": np.broadcast_to(prps_base_frame_zx, _prps),
+            "prps_base_frame_zy": np.broadcast_to(prps_base_frame_zy, _prps),
+            "prps_base_frame_zz": np.broadcast_to(prps_base_frame_zz, _prps),
+            "prps_base_point_x": np.broadcast_to(prps_base_point_x, _prps),
+            "prps_base_point_y": np.broadcast_to(prps_base_point_y, _prps),
+            "prps_base_point_z": np.broadcast_to(prps_base_point_z, _prps),
+            "prps_link1_mass": np.broadcast_to(prps_link1_mass, _prps),
+            "prps_link2_mass": np.broadcast_to(prps_link2_mass, _prps),
+            "prps_link3_mass": np.broadcast_to(prps_link3_mass, _prps),
+            "prps_platform_point_x": np.broadcast_to(prps_platform_point_x, _prps),
+            "prps_platform_point_y": np.broadcast_to(prps_platform_point_y, _prps),
+            "prps_platform_point_z": np.broadcast_to(prps_platform_point_z, _prps),
+            "size": np.broadcast_to(size, _prps),
+            "size_t_6": np.broadcast_to(size_t_6, _prps),
         },
     }
     return shared, legs
@@ -2973,7 +2974,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -935,9 +935,9 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -1690,9 +1690,9 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -2243,9 +2243,9 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -2699,9 +2699,9 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -3127,9 +3127,9 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -3607,9 +3607,9 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -3848,9 +3848,9 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -4164,9 +4164,9 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -4570,9 +4570,9 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;
@@ -5020,9 +5020,9 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
            joint 2 */
         const real Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z;
         const real Kd_2 = Kd_2_t + R(0.5)*Kd_2_t_3 - Kd_2_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2 = root_1*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2 = rrrs_joint3_offset_x*x_2_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2;

@@ -288,6 +288,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrrs = (len(_LEGS["rrrs"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -488,16 +489,16 @@ def _prepare(p):
     )
     potential_t = b_r0_z*rrrs_link1_mass
     potential_t_2 = rrrs_link2_mass*(b_r0_z + rrrs_joint2_offset_x)
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, (3,)))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, (3,)))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, (3,)))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_11, (3,)))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_12, (3,)))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_13, (3,)))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_14, (3,)))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_15, (3,)))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_16, (3,)))
+    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
+    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrs))
+    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrs))
+    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_11, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_12, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_13, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_14, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_15, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_16, _rrrs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrs
     # (L2) first moment about the platform origin
@@ -541,72 +542,72 @@ def _prepare(p):
     }
     legs = {
         "rrrs": {
-            "J_1_xx": np.broadcast_to(J_1_xx, (3,)),
-            "J_2_xx": np.broadcast_to(J_2_xx, (3,)),
-            "J_2_xy": np.broadcast_to(J_2_xy, (3,)),
-            "J_2_xz": np.broadcast_to(J_2_xz, (3,)),
-            "J_2_yy": np.broadcast_to(J_2_yy, (3,)),
-            "J_2_yz": np.broadcast_to(J_2_yz, (3,)),
-            "J_2_zz": np.broadcast_to(J_2_zz, (3,)),
-            "J_3_xx": np.broadcast_to(J_3_xx, (3,)),
-            "J_3_xy": np.broadcast_to(J_3_xy, (3,)),
-            "J_3_xz": np.broadcast_to(J_3_xz, (3,)),
-            "J_3_yy": np.broadcast_to(J_3_yy, (3,)),
-            "J_3_yz": np.broadcast_to(J_3_yz, (3,)),
-            "J_3_zz": np.broadcast_to(J_3_zz, (3,)),
-            "Kd_2_t": np.broadcast_to(Kd_2_t, (3,)),
-            "Kd_2_t_2": np.broadcast_to(Kd_2_t_2, (3,)),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, (3,)),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, (3,)),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, (3,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (3,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (3,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "branch_2": np.broadcast_to(branch_2, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_1_z": np.broadcast_to(h_1_z, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "h_2_z": np.broadcast_to(h_2_z, (3,)),
-            "h_3_x": np.broadcast_to(h_3_x, (3,)),
-            "h_3_y": np.broadcast_to(h_3_y, (3,)),
-            "h_3_z": np.broadcast_to(h_3_z, (3,)),
-            "inv_rrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrs_platform_joint_offset_x, (3,)),
-            "inv_size_t_6": np.broadcast_to(inv_size_t_6, (3,)),
-            "inv_size_t_7": np.broadcast_to(inv_size_t_7, (3,)),
-            "potential_t": np.broadcast_to(potential_t, (3,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (3,)),
-            "rho2_2_t": np.broadcast_to(rho2_2_t, (3,)),
-            "rrrs_base_frame_xx": np.broadcast_to(rrrs_base_frame_xx, (3,)),
-            "rrrs_base_frame_xy": np.broadcast_to(rrrs_base_frame_xy, (3,)),
-            "rrrs_base_frame_xz": np.broadcast_to(rrrs_base_frame_xz, (3,)),
-            "rrrs_base_frame_yx": np.broadcast_to(rrrs_base_frame_yx, (3,)),
-            "rrrs_base_frame_yy": np.broadcast_to(rrrs_base_frame_yy, (3,)),
-            "rrrs_base_frame_yz": np.broadcast_to(rrrs_base_frame_yz, (3,)),
-            "rrrs_base_frame_zx": np.broadcast_to(rrrs_base_frame_zx, (3,)),
-            "rrrs_base_frame_zy": np.broadcast_to(rrrs_base_frame_zy, (3,)),
-            "rrrs_base_frame_zz": np.broadcast_to(rrrs_base_frame_zz, (3,)),
-            "rrrs_base_point_x": np.broadcast_to(rrrs_base_point_x, (3,)),
-            "rrrs_base_point_y": np.broadcast_to(rrrs_base_point_y, (3,)),
-            "rrrs_base_point_z": np.broadcast_to(rrrs_base_point_z, (3,)),
-            "rrrs_joint2_offset_x": np.broadcast_to(rrrs_joint2_offset_x, (3,)),
-            "rrrs_joint3_offset_x": np.broadcast_to(rrrs_joint3_offset_x, (3,)),
-            "rrrs_link1_mass": np.broadcast_to(rrrs_link1_mass, (3,)),
-            "rrrs_link2_mass": np.broadcast_to(rrrs_link2_mass, (3,)),
-            "rrrs_link3_mass": np.broadcast_to(rrrs_link3_mass, (3,)),
-            "rrrs_platform_joint_offset_x": np.broadcast_to(rrrs_platform_joint_offset_x, (3,)),
-            "rrrs_platform_point_x": np.broadcast_to(rrrs_platform_point_x, (3,)),
-            "rrrs_platform_point_y": np.broadcast_to(rrrs_platform_point_y, (3,)),
-            "rrrs_platform_point_z": np.broadcast_to(rrrs_platform_point_z, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "size_t_8": np.broadcast_to(size_t_8, (3,)),
+            "J_1_xx": np.broadcast_to(J_1_xx, _rrrs),
+            "J_2_xx": np.broadcast_to(J_2_xx, _rrrs),
+            "J_2_xy": np.broadcast_to(J_2_xy, _rrrs),
+            "J_2_xz": np.broadcast_to(J_2_xz, _rrrs),
+            "J_2_yy": np.broadcast_to(J_2_yy, _rrrs),
+            "J_2_yz": np.broadcast_to(J_2_yz, _rrrs),
+            "J_2_zz": np.broadcast_to(J_2_zz, _rrrs),
+            "J_3_xx": np.broadcast_to(J_3_xx, _rrrs),
+            "J_3_xy": np.broadcast_to(J_3_xy, _rrrs),
+            "J_3_xz": np.broadcast_to(J_3_xz, _rrrs),
+            "J_3_yy": np.broadcast_to(J_3_yy, _rrrs),
+            "J_3_yz": np.broadcast_to(J_3_yz, _rrrs),
+            "J_3_zz": np.broadcast_to(J_3_zz, _rrrs),
+            "Kd_2_t": np.broadcast_to(Kd_2_t, _rrrs),
+            "Kd_2_t_2": np.broadcast_to(Kd_2_t_2, _rrrs),
+            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _rrrs),
+            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _rrrs),
+            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _rrrs),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _rrrs),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _rrrs),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _rrrs),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rrrs),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rrrs),
+            "branch_1": np.broadcast_to(branch_1, _rrrs),
+            "branch_2": np.broadcast_to(branch_2, _rrrs),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rrrs),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rrrs),
+            "g_r0_z": np.broadcast_to(g_r0_z, _rrrs),
+            "h_1_x": np.broadcast_to(h_1_x, _rrrs),
+            "h_1_y": np.broadcast_to(h_1_y, _rrrs),
+            "h_1_z": np.broadcast_to(h_1_z, _rrrs),
+            "h_2_x": np.broadcast_to(h_2_x, _rrrs),
+            "h_2_y": np.broadcast_to(h_2_y, _rrrs),
+            "h_2_z": np.broadcast_to(h_2_z, _rrrs),
+            "h_3_x": np.broadcast_to(h_3_x, _rrrs),
+            "h_3_y": np.broadcast_to(h_3_y, _rrrs),
+            "h_3_z": np.broadcast_to(h_3_z, _rrrs),
+            "inv_rrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrs_platform_joint_offset_x, _rrrs),
+            "inv_size_t_6": np.broadcast_to(inv_size_t_6, _rrrs),
+            "inv_size_t_7": np.broadcast_to(inv_size_t_7, _rrrs),
+            "potential_t": np.broadcast_to(potential_t, _rrrs),
+            "potential_t_2": np.broadcast_to(potential_t_2, _rrrs),
+            "rho2_2_t": np.broadcast_to(rho2_2_t, _rrrs),
+            "rrrs_base_frame_xx": np.broadcast_to(rrrs_base_frame_xx, _rrrs),
+            "rrrs_base_frame_xy": np.broadcast_to(rrrs_base_frame_xy, _rrrs),
+            "rrrs_base_frame_xz": np.broadcast_to(rrrs_base_frame_xz, _rrrs),
+            "rrrs_base_frame_yx": np.broadcast_to(rrrs_base_frame_yx, _rrrs),
+            "rrrs_base_frame_yy": np.broadcast_to(rrrs_base_frame_yy, _rrrs),
+            "rrrs_base_frame_yz": np.broadcast_to(rrrs_base_frame_yz, _rrrs),
+            "rrrs_base_frame_zx": np.broadcast_to(rrrs_base_frame_zx, _rrrs),
+            "rrrs_base_frame_zy": np.broadcast_to(rrrs_base_frame_zy, _rrrs),
+            "rrrs_base_frame_zz": np.broadcast_to(rrrs_base_frame_zz, _rrrs),
+            "rrrs_base_point_x": np.broadcast_to(rrrs_base_point_x, _rrrs),
+            "rrrs_base_point_y": np.broadcast_to(rrrs_base_point_y, _rrrs),
+            "rrrs_base_point_z": np.broadcast_to(rrrs_base_point_z, _rrrs),
+            "rrrs_joint2_offset_x": np.broadcast_to(rrrs_joint2_offset_x, _rrrs),
+            "rrrs_joint3_offset_x": np.broadcast_to(rrrs_joint3_offset_x, _rrrs),
+            "rrrs_link1_mass": np.broadcast_to(rrrs_link1_mass, _rrrs),
+            "rrrs_link2_mass": np.broadcast_to(rrrs_link2_mass, _rrrs),
+            "rrrs_link3_mass": np.broadcast_to(rrrs_link3_mass, _rrrs),
+            "rrrs_platform_joint_offset_x": np.broadcast_to(rrrs_platform_joint_offset_x, _rrrs),
+            "rrrs_platform_point_x": np.broadcast_to(rrrs_platform_point_x, _rrrs),
+            "rrrs_platform_point_y": np.broadcast_to(rrrs_platform_point_y, _rrrs),
+            "rrrs_platform_point_z": np.broadcast_to(rrrs_platform_point_z, _rrrs),
+            "size": np.broadcast_to(size, _rrrs),
+            "size_t_8": np.broadcast_to(size_t_8, _rrrs),
         },
     }
     return shared, legs
@@ -911,9 +912,9 @@ def _dynamics_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -1445,9 +1446,9 @@ def _M_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -1788,9 +1789,9 @@ def _Z_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -2141,9 +2142,9 @@ def _H_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -2408,9 +2409,9 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -2792,9 +2793,9 @@ def _inverse_kinematics_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -2920,9 +2921,9 @@ def _joint_rates_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -3114,9 +3115,9 @@ def _joint_accelerations_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -3390,9 +3391,9 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -3763,9 +3764,9 @@ def _potential_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_t_3 = root_1*root_1 + x_2_z*x_2_z
     Kd_2 = Kd_2_t + 0.5*Kd_2_t_3 - Kd_2_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2 = root_1*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2 = rrrs_joint3_offset_x*x_2_z
     # (rrrs-K19) squared amplitude
     rho2_2 = Kc_2*Kc_2 + Ks_2*Ks_2
@@ -4367,7 +4368,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -1335,26 +1335,26 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -1365,9 +1365,9 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -1407,10 +1407,10 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -2167,9 +2167,9 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -3012,26 +3012,26 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -3042,9 +3042,9 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -3084,10 +3084,10 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -3477,9 +3477,9 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -4097,26 +4097,26 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -4127,9 +4127,9 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -4169,10 +4169,10 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -4632,9 +4632,9 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -5124,26 +5124,26 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const H_val
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -5154,9 +5154,9 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const H_val
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -5195,10 +5195,10 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const H_val
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs -
             c_4_rrrrs*rrrrs_platform_joint_offset_x*s_4_rrrrs;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -5374,9 +5374,9 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -5823,26 +5823,26 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -5853,9 +5853,9 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -5895,10 +5895,10 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -6413,9 +6413,9 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -6933,26 +6933,26 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t leg, size_t 
             R_yz*rrrrs_platform_point_z - rrrrs_base_point_y;
         const real S_rrrrs_z = t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_r1_y = root_1_rrrrs*s_2_rrrrs - c_2_rrrrs_t*x_2_rrrrs_z;
         /* (rrrrs-K15) from the origin of joint 3 to the connection point */
         const real x_3_rrrrs_x = c_2_rrrrs_t*root_1_rrrrs + s_2_rrrrs*x_2_rrrrs_z -
@@ -6961,9 +6961,9 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t leg, size_t 
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -6976,9 +6976,9 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t leg, size_t 
             rrrrs_joint4_offset_x;
         /* (rrrrs-K25) cosine of the angle of joint 3 from its reference direction */
         const real inv_rho2_3_rrrrs = 1/rho2_3_rrrrs;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
-        /* (rrrrs-K10) displacement of joint 1 */
+        /* (rrrrs-K12) displacement of joint 1 */
         const real q_1_rrrrs = angle(inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs,
             inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs);
         /* (rrrrs-K27) displacement of joint 3 */
@@ -7082,9 +7082,9 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -7325,26 +7325,26 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t leg, size_t legs, c
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -7355,9 +7355,9 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t leg, size_t legs, c
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -7396,10 +7396,10 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t leg, size_t legs, c
             r_1_rrrrs_r2_y*s_4_rrrrs);
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -7571,9 +7571,9 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -7895,26 +7895,26 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -7925,9 +7925,9 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -7967,10 +7967,10 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -8240,9 +8240,9 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -8671,26 +8671,26 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
         const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
         const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
         const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
         const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
@@ -8701,9 +8701,9 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -8743,10 +8743,10 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
         const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t;
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
@@ -9215,9 +9215,9 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
@@ -9692,26 +9692,26 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, con
             R_yz*rrrrs_platform_point_z - rrrrs_base_point_y;
         const real S_rrrrs_z = t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
             R_zz*rrrrs_platform_point_z - rrrrs_base_point_z;
-        /* (rrrrs-K2) component along the reference direction */
+        /* (rrrrs-K4) component along the reference direction */
         const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
             S_rrrrs_z*rrrrs_base_frame_zy;
-        /* (rrrrs-K3) component across the reference direction */
+        /* (rrrrs-K5) component across the reference direction */
         const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
             S_rrrrs_z*rrrrs_base_frame_zz;
-        /* (rrrrs-K5) squared amplitude */
+        /* (rrrrs-K7) squared amplitude */
         const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
-        /* (rrrrs-K7) root, with the sign of the branch */
+        /* (rrrrs-K9) root, with the sign of the branch */
         const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
-        /* (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
             S_rrrrs_z*rrrrs_base_frame_zx;
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
-        /* (rrrrs-K13) cosine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
         const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
-        /* (rrrrs-K14) sine of the angle of joint 2 from its reference direction */
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
         const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
-        /* (rrrrs-K12) from the origin of joint 2 to the connection point */
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
         const real x_2_rrrrs_r1_y = root_1_rrrrs*s_2_rrrrs - c_2_rrrrs_t*x_2_rrrrs_z;
         /* (rrrrs-K15) from the origin of joint 3 to the connection point */
         const real x_3_rrrrs_x = c_2_rrrrs_t*root_1_rrrrs + s_2_rrrrs*x_2_rrrrs_z -
@@ -9720,9 +9720,9 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, con
            joint 3 */
         const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
         const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
-        /* (rrrrs-K20) factor of cos in the equation of joint 3 */
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
         const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
-        /* (rrrrs-K21) factor of sin in the equation of joint 3 */
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
         const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
         /* (rrrrs-K22) squared amplitude */
         const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
@@ -9743,10 +9743,10 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, con
         const real c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs);
         /* (rrrrs-K26) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs);
-        /* (rrrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-K9) sine of the angle of joint 1 from its reference direction */
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
         /* (V1) potential energy */
         const real b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs;
@@ -9877,9 +9877,9 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
            joint 2 */
         const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
         const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
-        /* (rrrs-K17) factor of cos in the equation of joint 2 */
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
         const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
-        /* (rrrs-K18) factor of sin in the equation of joint 2 */
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
         const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
         /* (rrrs-K19) squared amplitude */
         const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;

@@ -371,6 +371,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrrrs = (len(_LEGS["rrrrs"]),)
+    _rrrs = (len(_LEGS["rrrs"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -664,16 +666,16 @@ def _prepare(p):
     )
     potential_t_3 = b_rrrrs_r0_z*rrrrs_link1_mass
     potential_t_4 = rrrrs_link2_mass*(b_rrrrs_r0_z + rrrrs_joint2_offset_x)
-    total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, (1,)))
-    total_rrrrs_x = np.sum(np.broadcast_to(h_star_t_4, (1,)))
-    total_rrrrs_y = np.sum(np.broadcast_to(h_star_t_5, (1,)))
-    total_rrrrs_z = np.sum(np.broadcast_to(h_star_t_6, (1,)))
-    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_11, (1,)))
-    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_12, (1,)))
-    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_13, (1,)))
-    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_14, (1,)))
-    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_15, (1,)))
-    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_16, (1,)))
+    total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, _rrrrs))
+    total_rrrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrs))
+    total_rrrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrs))
+    total_rrrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrs))
+    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_11, _rrrrs))
+    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_12, _rrrrs))
+    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_13, _rrrrs))
+    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_14, _rrrrs))
+    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_15, _rrrrs))
+    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_16, _rrrrs))
     # (rrrs-G1) size of the leg, the measure of what is near singular
     size_rrrs_t = (
     rrrs_base_point_x*rrrs_base_point_x + rrrs_base_point_y*rrrs_base_point_y +
@@ -808,16 +810,16 @@ def _prepare(p):
     )
     potential_t = b_rrrs_r0_z*rrrs_link1_mass
     potential_t_2 = rrrs_link2_mass*(b_rrrs_r0_z + rrrs_joint2_offset_x)
-    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, (2,)))
-    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_7, (2,)))
-    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_8, (2,)))
-    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_9, (2,)))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_17, (2,)))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_18, (2,)))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_19, (2,)))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_20, (2,)))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_21, (2,)))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_22, (2,)))
+    total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
+    total_rrrs_x = np.sum(np.broadcast_to(h_star_t_7, _rrrs))
+    total_rrrs_y = np.sum(np.broadcast_to(h_star_t_8, _rrrs))
+    total_rrrs_z = np.sum(np.broadcast_to(h_star_t_9, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_17, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_18, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_19, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_20, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_21, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_22, _rrrs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrs + total_rrrs
     # (L2) first moment about the platform origin
@@ -861,155 +863,155 @@ def _prepare(p):
     }
     legs = {
         "rrrrs": {
-            "J_1_rrrrs_xx": np.broadcast_to(J_1_rrrrs_xx, (1,)),
-            "J_2_rrrrs_xx": np.broadcast_to(J_2_rrrrs_xx, (1,)),
-            "J_2_rrrrs_xy": np.broadcast_to(J_2_rrrrs_xy, (1,)),
-            "J_2_rrrrs_xz": np.broadcast_to(J_2_rrrrs_xz, (1,)),
-            "J_2_rrrrs_yy": np.broadcast_to(J_2_rrrrs_yy, (1,)),
-            "J_2_rrrrs_yz": np.broadcast_to(J_2_rrrrs_yz, (1,)),
-            "J_2_rrrrs_zz": np.broadcast_to(J_2_rrrrs_zz, (1,)),
-            "J_3_rrrrs_xx": np.broadcast_to(J_3_rrrrs_xx, (1,)),
-            "J_3_rrrrs_xy": np.broadcast_to(J_3_rrrrs_xy, (1,)),
-            "J_3_rrrrs_xz": np.broadcast_to(J_3_rrrrs_xz, (1,)),
-            "J_3_rrrrs_yy": np.broadcast_to(J_3_rrrrs_yy, (1,)),
-            "J_3_rrrrs_yz": np.broadcast_to(J_3_rrrrs_yz, (1,)),
-            "J_3_rrrrs_zz": np.broadcast_to(J_3_rrrrs_zz, (1,)),
-            "J_4_rrrrs_xx": np.broadcast_to(J_4_rrrrs_xx, (1,)),
-            "J_4_rrrrs_xy": np.broadcast_to(J_4_rrrrs_xy, (1,)),
-            "J_4_rrrrs_xz": np.broadcast_to(J_4_rrrrs_xz, (1,)),
-            "J_4_rrrrs_yy": np.broadcast_to(J_4_rrrrs_yy, (1,)),
-            "J_4_rrrrs_yz": np.broadcast_to(J_4_rrrrs_yz, (1,)),
-            "J_4_rrrrs_zz": np.broadcast_to(J_4_rrrrs_zz, (1,)),
-            "Kd_3_rrrrs_t": np.broadcast_to(Kd_3_rrrrs_t, (1,)),
-            "Kd_3_rrrrs_t_2": np.broadcast_to(Kd_3_rrrrs_t_2, (1,)),
-            "Sigma_2_rrrrs_xx": np.broadcast_to(Sigma_2_rrrrs_xx, (1,)),
-            "Sigma_2_rrrrs_yy": np.broadcast_to(Sigma_2_rrrrs_yy, (1,)),
-            "Sigma_2_rrrrs_zz": np.broadcast_to(Sigma_2_rrrrs_zz, (1,)),
-            "Sigma_3_rrrrs_xx": np.broadcast_to(Sigma_3_rrrrs_xx, (1,)),
-            "Sigma_3_rrrrs_yy": np.broadcast_to(Sigma_3_rrrrs_yy, (1,)),
-            "Sigma_3_rrrrs_zz": np.broadcast_to(Sigma_3_rrrrs_zz, (1,)),
-            "Sigma_4_rrrrs_xx": np.broadcast_to(Sigma_4_rrrrs_xx, (1,)),
-            "Sigma_4_rrrrs_yy": np.broadcast_to(Sigma_4_rrrrs_yy, (1,)),
-            "Sigma_4_rrrrs_zz": np.broadcast_to(Sigma_4_rrrrs_zz, (1,)),
-            "b_rrrrs_r0_x": np.broadcast_to(b_rrrrs_r0_x, (1,)),
-            "b_rrrrs_r0_y": np.broadcast_to(b_rrrrs_r0_y, (1,)),
-            "b_rrrrs_r0_z": np.broadcast_to(b_rrrrs_r0_z, (1,)),
-            "branch_1_rrrrs": np.broadcast_to(branch_1_rrrrs, (1,)),
-            "branch_3_rrrrs": np.broadcast_to(branch_3_rrrrs, (1,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (1,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (1,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (1,)),
-            "h_1_rrrrs_x": np.broadcast_to(h_1_rrrrs_x, (1,)),
-            "h_1_rrrrs_y": np.broadcast_to(h_1_rrrrs_y, (1,)),
-            "h_1_rrrrs_z": np.broadcast_to(h_1_rrrrs_z, (1,)),
-            "h_2_rrrrs_x": np.broadcast_to(h_2_rrrrs_x, (1,)),
-            "h_2_rrrrs_y": np.broadcast_to(h_2_rrrrs_y, (1,)),
-            "h_2_rrrrs_z": np.broadcast_to(h_2_rrrrs_z, (1,)),
-            "h_3_rrrrs_x": np.broadcast_to(h_3_rrrrs_x, (1,)),
-            "h_3_rrrrs_y": np.broadcast_to(h_3_rrrrs_y, (1,)),
-            "h_3_rrrrs_z": np.broadcast_to(h_3_rrrrs_z, (1,)),
-            "h_4_rrrrs_x": np.broadcast_to(h_4_rrrrs_x, (1,)),
-            "h_4_rrrrs_y": np.broadcast_to(h_4_rrrrs_y, (1,)),
-            "h_4_rrrrs_z": np.broadcast_to(h_4_rrrrs_z, (1,)),
-            "inv_rrrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrrs_platform_joint_offset_x, (1,)),
-            "inv_size_rrrrs_t_7": np.broadcast_to(inv_size_rrrrs_t_7, (1,)),
-            "inv_size_rrrrs_t_8": np.broadcast_to(inv_size_rrrrs_t_8, (1,)),
-            "potential_t_3": np.broadcast_to(potential_t_3, (1,)),
-            "potential_t_4": np.broadcast_to(potential_t_4, (1,)),
-            "rho2_3_rrrrs_t": np.broadcast_to(rho2_3_rrrrs_t, (1,)),
-            "rrrrs_base_frame_xx": np.broadcast_to(rrrrs_base_frame_xx, (1,)),
-            "rrrrs_base_frame_xy": np.broadcast_to(rrrrs_base_frame_xy, (1,)),
-            "rrrrs_base_frame_xz": np.broadcast_to(rrrrs_base_frame_xz, (1,)),
-            "rrrrs_base_frame_yx": np.broadcast_to(rrrrs_base_frame_yx, (1,)),
-            "rrrrs_base_frame_yy": np.broadcast_to(rrrrs_base_frame_yy, (1,)),
-            "rrrrs_base_frame_yz": np.broadcast_to(rrrrs_base_frame_yz, (1,)),
-            "rrrrs_base_frame_zx": np.broadcast_to(rrrrs_base_frame_zx, (1,)),
-            "rrrrs_base_frame_zy": np.broadcast_to(rrrrs_base_frame_zy, (1,)),
-            "rrrrs_base_frame_zz": np.broadcast_to(rrrrs_base_frame_zz, (1,)),
-            "rrrrs_base_point_x": np.broadcast_to(rrrrs_base_point_x, (1,)),
-            "rrrrs_base_point_y": np.broadcast_to(rrrrs_base_point_y, (1,)),
-            "rrrrs_base_point_z": np.broadcast_to(rrrrs_base_point_z, (1,)),
-            "rrrrs_joint2_offset_x": np.broadcast_to(rrrrs_joint2_offset_x, (1,)),
-            "rrrrs_joint3_offset_x": np.broadcast_to(rrrrs_joint3_offset_x, (1,)),
-            "rrrrs_joint4_offset_x": np.broadcast_to(rrrrs_joint4_offset_x, (1,)),
-            "rrrrs_link1_mass": np.broadcast_to(rrrrs_link1_mass, (1,)),
-            "rrrrs_link2_mass": np.broadcast_to(rrrrs_link2_mass, (1,)),
-            "rrrrs_link3_mass": np.broadcast_to(rrrrs_link3_mass, (1,)),
-            "rrrrs_link4_mass": np.broadcast_to(rrrrs_link4_mass, (1,)),
-            "rrrrs_platform_joint_offset_x": np.broadcast_to(rrrrs_platform_joint_offset_x, (1,)),
-            "rrrrs_platform_point_x": np.broadcast_to(rrrrs_platform_point_x, (1,)),
-            "rrrrs_platform_point_y": np.broadcast_to(rrrrs_platform_point_y, (1,)),
-            "rrrrs_platform_point_z": np.broadcast_to(rrrrs_platform_point_z, (1,)),
-            "size_rrrrs": np.broadcast_to(size_rrrrs, (1,)),
-            "size_rrrrs_t_8": np.broadcast_to(size_rrrrs_t_8, (1,)),
+            "J_1_rrrrs_xx": np.broadcast_to(J_1_rrrrs_xx, _rrrrs),
+            "J_2_rrrrs_xx": np.broadcast_to(J_2_rrrrs_xx, _rrrrs),
+            "J_2_rrrrs_xy": np.broadcast_to(J_2_rrrrs_xy, _rrrrs),
+            "J_2_rrrrs_xz": np.broadcast_to(J_2_rrrrs_xz, _rrrrs),
+            "J_2_rrrrs_yy": np.broadcast_to(J_2_rrrrs_yy, _rrrrs),
+            "J_2_rrrrs_yz": np.broadcast_to(J_2_rrrrs_yz, _rrrrs),
+            "J_2_rrrrs_zz": np.broadcast_to(J_2_rrrrs_zz, _rrrrs),
+            "J_3_rrrrs_xx": np.broadcast_to(J_3_rrrrs_xx, _rrrrs),
+            "J_3_rrrrs_xy": np.broadcast_to(J_3_rrrrs_xy, _rrrrs),
+            "J_3_rrrrs_xz": np.broadcast_to(J_3_rrrrs_xz, _rrrrs),
+            "J_3_rrrrs_yy": np.broadcast_to(J_3_rrrrs_yy, _rrrrs),
+            "J_3_rrrrs_yz": np.broadcast_to(J_3_rrrrs_yz, _rrrrs),
+            "J_3_rrrrs_zz": np.broadcast_to(J_3_rrrrs_zz, _rrrrs),
+            "J_4_rrrrs_xx": np.broadcast_to(J_4_rrrrs_xx, _rrrrs),
+            "J_4_rrrrs_xy": np.broadcast_to(J_4_rrrrs_xy, _rrrrs),
+            "J_4_rrrrs_xz": np.broadcast_to(J_4_rrrrs_xz, _rrrrs),
+            "J_4_rrrrs_yy": np.broadcast_to(J_4_rrrrs_yy, _rrrrs),
+            "J_4_rrrrs_yz": np.broadcast_to(J_4_rrrrs_yz, _rrrrs),
+            "J_4_rrrrs_zz": np.broadcast_to(J_4_rrrrs_zz, _rrrrs),
+            "Kd_3_rrrrs_t": np.broadcast_to(Kd_3_rrrrs_t, _rrrrs),
+            "Kd_3_rrrrs_t_2": np.broadcast_to(Kd_3_rrrrs_t_2, _rrrrs),
+            "Sigma_2_rrrrs_xx": np.broadcast_to(Sigma_2_rrrrs_xx, _rrrrs),
+            "Sigma_2_rrrrs_yy": np.broadcast_to(Sigma_2_rrrrs_yy, _rrrrs),
+            "Sigma_2_rrrrs_zz": np.broadcast_to(Sigma_2_rrrrs_zz, _rrrrs),
+            "Sigma_3_rrrrs_xx": np.broadcast_to(Sigma_3_rrrrs_xx, _rrrrs),
+            "Sigma_3_rrrrs_yy": np.broadcast_to(Sigma_3_rrrrs_yy, _rrrrs),
+            "Sigma_3_rrrrs_zz": np.broadcast_to(Sigma_3_rrrrs_zz, _rrrrs),
+            "Sigma_4_rrrrs_xx": np.broadcast_to(Sigma_4_rrrrs_xx, _rrrrs),
+            "Sigma_4_rrrrs_yy": np.broadcast_to(Sigma_4_rrrrs_yy, _rrrrs),
+            "Sigma_4_rrrrs_zz": np.broadcast_to(Sigma_4_rrrrs_zz, _rrrrs),
+            "b_rrrrs_r0_x": np.broadcast_to(b_rrrrs_r0_x, _rrrrs),
+            "b_rrrrs_r0_y": np.broadcast_to(b_rrrrs_r0_y, _rrrrs),
+            "b_rrrrs_r0_z": np.broadcast_to(b_rrrrs_r0_z, _rrrrs),
+            "branch_1_rrrrs": np.broadcast_to(branch_1_rrrrs, _rrrrs),
+            "branch_3_rrrrs": np.broadcast_to(branch_3_rrrrs, _rrrrs),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rrrrs),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rrrrs),
+            "g_r0_z": np.broadcast_to(g_r0_z, _rrrrs),
+            "h_1_rrrrs_x": np.broadcast_to(h_1_rrrrs_x, _rrrrs),
+            "h_1_rrrrs_y": np.broadcast_to(h_1_rrrrs_y, _rrrrs),
+            "h_1_rrrrs_z": np.broadcast_to(h_1_rrrrs_z, _rrrrs),
+            "h_2_rrrrs_x": np.broadcast_to(h_2_rrrrs_x, _rrrrs),
+            "h_2_rrrrs_y": np.broadcast_to(h_2_rrrrs_y, _rrrrs),
+            "h_2_rrrrs_z": np.broadcast_to(h_2_rrrrs_z, _rrrrs),
+            "h_3_rrrrs_x": np.broadcast_to(h_3_rrrrs_x, _rrrrs),
+            "h_3_rrrrs_y": np.broadcast_to(h_3_rrrrs_y, _rrrrs),
+            "h_3_rrrrs_z": np.broadcast_to(h_3_rrrrs_z, _rrrrs),
+            "h_4_rrrrs_x": np.broadcast_to(h_4_rrrrs_x, _rrrrs),
+            "h_4_rrrrs_y": np.broadcast_to(h_4_rrrrs_y, _rrrrs),
+            "h_4_rrrrs_z": np.broadcast_to(h_4_rrrrs_z, _rrrrs),
+            "inv_rrrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrrs_platform_joint_offset_x, _rrrrs),
+            "inv_size_rrrrs_t_7": np.broadcast_to(inv_size_rrrrs_t_7, _rrrrs),
+            "inv_size_rrrrs_t_8": np.broadcast_to(inv_size_rrrrs_t_8, _rrrrs),
+            "potential_t_3": np.broadcast_to(potential_t_3, _rrrrs),
+            "potential_t_4": np.broadcast_to(potential_t_4, _rrrrs),
+            "rho2_3_rrrrs_t": np.broadcast_to(rho2_3_rrrrs_t, _rrrrs),
+            "rrrrs_base_frame_xx": np.broadcast_to(rrrrs_base_frame_xx, _rrrrs),
+            "rrrrs_base_frame_xy": np.broadcast_to(rrrrs_base_frame_xy, _rrrrs),
+            "rrrrs_base_frame_xz": np.broadcast_to(rrrrs_base_frame_xz, _rrrrs),
+            "rrrrs_base_frame_yx": np.broadcast_to(rrrrs_base_frame_yx, _rrrrs),
+            "rrrrs_base_frame_yy": np.broadcast_to(rrrrs_base_frame_yy, _rrrrs),
+            "rrrrs_base_frame_yz": np.broadcast_to(rrrrs_base_frame_yz, _rrrrs),
+            "rrrrs_base_frame_zx": np.broadcast_to(rrrrs_base_frame_zx, _rrrrs),
+            "rrrrs_base_frame_zy": np.broadcast_to(rrrrs_base_frame_zy, _rrrrs),
+            "rrrrs_base_frame_zz": np.broadcast_to(rrrrs_base_frame_zz, _rrrrs),
+            "rrrrs_base_point_x": np.broadcast_to(rrrrs_base_point_x, _rrrrs),
+            "rrrrs_base_point_y": np.broadcast_to(rrrrs_base_point_y, _rrrrs),
+            "rrrrs_base_point_z": np.broadcast_to(rrrrs_base_point_z, _rrrrs),
+            "rrrrs_joint2_offset_x": np.broadcast_to(rrrrs_joint2_offset_x, _rrrrs),
+            "rrrrs_joint3_offset_x": np.broadcast_to(rrrrs_joint3_offset_x, _rrrrs),
+            "rrrrs_joint4_offset_x": np.broadcast_to(rrrrs_joint4_offset_x, _rrrrs),
+            "rrrrs_link1_mass": np.broadcast_to(rrrrs_link1_mass, _rrrrs),
+            "rrrrs_link2_mass": np.broadcast_to(rrrrs_link2_mass, _rrrrs),
+            "rrrrs_link3_mass": np.broadcast_to(rrrrs_link3_mass, _rrrrs),
+            "rrrrs_link4_mass": np.broadcast_to(rrrrs_link4_mass, _rrrrs),
+            "rrrrs_platform_joint_offset_x": np.broadcast_to(rrrrs_platform_joint_offset_x, _rrrrs),
+            "rrrrs_platform_point_x": np.broadcast_to(rrrrs_platform_point_x, _rrrrs),
+            "rrrrs_platform_point_y": np.broadcast_to(rrrrs_platform_point_y, _rrrrs),
+            "rrrrs_platform_point_z": np.broadcast_to(rrrrs_platform_point_z, _rrrrs),
+            "size_rrrrs": np.broadcast_to(size_rrrrs, _rrrrs),
+            "size_rrrrs_t_8": np.broadcast_to(size_rrrrs_t_8, _rrrrs),
         },
         "rrrs": {
-            "J_1_rrrs_xx": np.broadcast_to(J_1_rrrs_xx, (2,)),
-            "J_2_rrrs_xx": np.broadcast_to(J_2_rrrs_xx, (2,)),
-            "J_2_rrrs_xy": np.broadcast_to(J_2_rrrs_xy, (2,)),
-            "J_2_rrrs_xz": np.broadcast_to(J_2_rrrs_xz, (2,)),
-            "J_2_rrrs_yy": np.broadcast_to(J_2_rrrs_yy, (2,)),
-            "J_2_rrrs_yz": np.broadcast_to(J_2_rrrs_yz, (2,)),
-            "J_2_rrrs_zz": np.broadcast_to(J_2_rrrs_zz, (2,)),
-            "J_3_rrrs_xx": np.broadcast_to(J_3_rrrs_xx, (2,)),
-            "J_3_rrrs_xy": np.broadcast_to(J_3_rrrs_xy, (2,)),
-            "J_3_rrrs_xz": np.broadcast_to(J_3_rrrs_xz, (2,)),
-            "J_3_rrrs_yy": np.broadcast_to(J_3_rrrs_yy, (2,)),
-            "J_3_rrrs_yz": np.broadcast_to(J_3_rrrs_yz, (2,)),
-            "J_3_rrrs_zz": np.broadcast_to(J_3_rrrs_zz, (2,)),
-            "Kd_2_rrrs_t": np.broadcast_to(Kd_2_rrrs_t, (2,)),
-            "Kd_2_rrrs_t_2": np.broadcast_to(Kd_2_rrrs_t_2, (2,)),
-            "Sigma_2_rrrs_xx": np.broadcast_to(Sigma_2_rrrs_xx, (2,)),
-            "Sigma_2_rrrs_yy": np.broadcast_to(Sigma_2_rrrs_yy, (2,)),
-            "Sigma_2_rrrs_zz": np.broadcast_to(Sigma_2_rrrs_zz, (2,)),
-            "Sigma_3_rrrs_xx": np.broadcast_to(Sigma_3_rrrs_xx, (2,)),
-            "Sigma_3_rrrs_yy": np.broadcast_to(Sigma_3_rrrs_yy, (2,)),
-            "Sigma_3_rrrs_zz": np.broadcast_to(Sigma_3_rrrs_zz, (2,)),
-            "b_rrrs_r0_x": np.broadcast_to(b_rrrs_r0_x, (2,)),
-            "b_rrrs_r0_y": np.broadcast_to(b_rrrs_r0_y, (2,)),
-            "branch_1_rrrs": np.broadcast_to(branch_1_rrrs, (2,)),
-            "branch_2_rrrs": np.broadcast_to(branch_2_rrrs, (2,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (2,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (2,)),
-            "g_r0_z_2": np.broadcast_to(g_r0_z_2, (2,)),
-            "h_1_rrrs_x": np.broadcast_to(h_1_rrrs_x, (2,)),
-            "h_1_rrrs_y": np.broadcast_to(h_1_rrrs_y, (2,)),
-            "h_1_rrrs_z": np.broadcast_to(h_1_rrrs_z, (2,)),
-            "h_2_rrrs_x": np.broadcast_to(h_2_rrrs_x, (2,)),
-            "h_2_rrrs_y": np.broadcast_to(h_2_rrrs_y, (2,)),
-            "h_2_rrrs_z": np.broadcast_to(h_2_rrrs_z, (2,)),
-            "h_3_rrrs_x": np.broadcast_to(h_3_rrrs_x, (2,)),
-            "h_3_rrrs_y": np.broadcast_to(h_3_rrrs_y, (2,)),
-            "h_3_rrrs_z": np.broadcast_to(h_3_rrrs_z, (2,)),
-            "inv_rrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrs_platform_joint_offset_x, (2,)),
-            "inv_size_rrrs_t_6": np.broadcast_to(inv_size_rrrs_t_6, (2,)),
-            "inv_size_rrrs_t_7": np.broadcast_to(inv_size_rrrs_t_7, (2,)),
-            "potential_t": np.broadcast_to(potential_t, (2,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (2,)),
-            "rho2_2_rrrs_t": np.broadcast_to(rho2_2_rrrs_t, (2,)),
-            "rrrs_base_frame_xx": np.broadcast_to(rrrs_base_frame_xx, (2,)),
-            "rrrs_base_frame_xy": np.broadcast_to(rrrs_base_frame_xy, (2,)),
-            "rrrs_base_frame_xz": np.broadcast_to(rrrs_base_frame_xz, (2,)),
-            "rrrs_base_frame_yx": np.broadcast_to(rrrs_base_frame_yx, (2,)),
-            "rrrs_base_frame_yy": np.broadcast_to(rrrs_base_frame_yy, (2,)),
-            "rrrs_base_frame_yz": np.broadcast_to(rrrs_base_frame_yz, (2,)),
-            "rrrs_base_frame_zx": np.broadcast_to(rrrs_base_frame_zx, (2,)),
-            "rrrs_base_frame_zy": np.broadcast_to(rrrs_base_frame_zy, (2,)),
-            "rrrs_base_frame_zz": np.broadcast_to(rrrs_base_frame_zz, (2,)),
-            "rrrs_base_point_x": np.broadcast_to(rrrs_base_point_x, (2,)),
-            "rrrs_base_point_y": np.broadcast_to(rrrs_base_point_y, (2,)),
-            "rrrs_base_point_z": np.broadcast_to(rrrs_base_point_z, (2,)),
-            "rrrs_joint2_offset_x": np.broadcast_to(rrrs_joint2_offset_x, (2,)),
-            "rrrs_joint3_offset_x": np.broadcast_to(rrrs_joint3_offset_x, (2,)),
-            "rrrs_link1_mass": np.broadcast_to(rrrs_link1_mass, (2,)),
-            "rrrs_link2_mass": np.broadcast_to(rrrs_link2_mass, (2,)),
-            "rrrs_link3_mass": np.broadcast_to(rrrs_link3_mass, (2,)),
-            "rrrs_platform_joint_offset_x": np.broadcast_to(rrrs_platform_joint_offset_x, (2,)),
-            "rrrs_platform_point_x": np.broadcast_to(rrrs_platform_point_x, (2,)),
-            "rrrs_platform_point_y": np.broadcast_to(rrrs_platform_point_y, (2,)),
-            "rrrs_platform_point_z": np.broadcast_to(rrrs_platform_point_z, (2,)),
-            "size_rrrs": np.broadcast_to(size_rrrs, (2,)),
-            "size_rrrs_t_8": np.broadcast_to(size_rrrs_t_8, (2,)),
+            "J_1_rrrs_xx": np.broadcast_to(J_1_rrrs_xx, _rrrs),
+            "J_2_rrrs_xx": np.broadcast_to(J_2_rrrs_xx, _rrrs),
+            "J_2_rrrs_xy": np.broadcast_to(J_2_rrrs_xy, _rrrs),
+            "J_2_rrrs_xz": np.broadcast_to(J_2_rrrs_xz, _rrrs),
+            "J_2_rrrs_yy": np.broadcast_to(J_2_rrrs_yy, _rrrs),
+            "J_2_rrrs_yz": np.broadcast_to(J_2_rrrs_yz, _rrrs),
+            "J_2_rrrs_zz": np.broadcast_to(J_2_rrrs_zz, _rrrs),
+            "J_3_rrrs_xx": np.broadcast_to(J_3_rrrs_xx, _rrrs),
+            "J_3_rrrs_xy": np.broadcast_to(J_3_rrrs_xy, _rrrs),
+            "J_3_rrrs_xz": np.broadcast_to(J_3_rrrs_xz, _rrrs),
+            "J_3_rrrs_yy": np.broadcast_to(J_3_rrrs_yy, _rrrs),
+            "J_3_rrrs_yz": np.broadcast_to(J_3_rrrs_yz, _rrrs),
+            "J_3_rrrs_zz": np.broadcast_to(J_3_rrrs_zz, _rrrs),
+            "Kd_2_rrrs_t": np.broadcast_to(Kd_2_rrrs_t, _rrrs),
+            "Kd_2_rrrs_t_2": np.broadcast_to(Kd_2_rrrs_t_2, _rrrs),
+            "Sigma_2_rrrs_xx": np.broadcast_to(Sigma_2_rrrs_xx, _rrrs),
+            "Sigma_2_rrrs_yy": np.broadcast_to(Sigma_2_rrrs_yy, _rrrs),
+            "Sigma_2_rrrs_zz": np.broadcast_to(Sigma_2_rrrs_zz, _rrrs),
+            "Sigma_3_rrrs_xx": np.broadcast_to(Sigma_3_rrrs_xx, _rrrs),
+            "Sigma_3_rrrs_yy": np.broadcast_to(Sigma_3_rrrs_yy, _rrrs),
+            "Sigma_3_rrrs_zz": np.broadcast_to(Sigma_3_rrrs_zz, _rrrs),
+            "b_rrrs_r0_x": np.broadcast_to(b_rrrs_r0_x, _rrrs),
+            "b_rrrs_r0_y": np.broadcast_to(b_rrrs_r0_y, _rrrs),
+            "branch_1_rrrs": np.broadcast_to(branch_1_rrrs, _rrrs),
+            "branch_2_rrrs": np.broadcast_to(branch_2_rrrs, _rrrs),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrrs),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrrs),
+            "g_r0_z_2": np.broadcast_to(g_r0_z_2, _rrrs),
+            "h_1_rrrs_x": np.broadcast_to(h_1_rrrs_x, _rrrs),
+            "h_1_rrrs_y": np.broadcast_to(h_1_rrrs_y, _rrrs),
+            "h_1_rrrs_z": np.broadcast_to(h_1_rrrs_z, _rrrs),
+            "h_2_rrrs_x": np.broadcast_to(h_2_rrrs_x, _rrrs),
+            "h_2_rrrs_y": np.broadcast_to(h_2_rrrs_y, _rrrs),
+            "h_2_rrrs_z": np.broadcast_to(h_2_rrrs_z, _rrrs),
+            "h_3_rrrs_x": np.broadcast_to(h_3_rrrs_x, _rrrs),
+            "h_3_rrrs_y": np.broadcast_to(h_3_rrrs_y, _rrrs),
+            "h_3_rrrs_z": np.broadcast_to(h_3_rrrs_z, _rrrs),
+            "inv_rrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrs_platform_joint_offset_x, _rrrs),
+            "inv_size_rrrs_t_6": np.broadcast_to(inv_size_rrrs_t_6, _rrrs),
+            "inv_size_rrrs_t_7": np.broadcast_to(inv_size_rrrs_t_7, _rrrs),
+            "potential_t": np.broadcast_to(potential_t, _rrrs),
+            "potential_t_2": np.broadcast_to(potential_t_2, _rrrs),
+            "rho2_2_rrrs_t": np.broadcast_to(rho2_2_rrrs_t, _rrrs),
+            "rrrs_base_frame_xx": np.broadcast_to(rrrs_base_frame_xx, _rrrs),
+            "rrrs_base_frame_xy": np.broadcast_to(rrrs_base_frame_xy, _rrrs),
+            "rrrs_base_frame_xz": np.broadcast_to(rrrs_base_frame_xz, _rrrs),
+            "rrrs_base_frame_yx": np.broadcast_to(rrrs_base_frame_yx, _rrrs),
+            "rrrs_base_frame_yy": np.broadcast_to(rrrs_base_frame_yy, _rrrs),
+            "rrrs_base_frame_yz": np.broadcast_to(rrrs_base_frame_yz, _rrrs),
+            "rrrs_base_frame_zx": np.broadcast_to(rrrs_base_frame_zx, _rrrs),
+            "rrrs_base_frame_zy": np.broadcast_to(rrrs_base_frame_zy, _rrrs),
+            "rrrs_base_frame_zz": np.broadcast_to(rrrs_base_frame_zz, _rrrs),
+            "rrrs_base_point_x": np.broadcast_to(rrrs_base_point_x, _rrrs),
+            "rrrs_base_point_y": np.broadcast_to(rrrs_base_point_y, _rrrs),
+            "rrrs_base_point_z": np.broadcast_to(rrrs_base_point_z, _rrrs),
+            "rrrs_joint2_offset_x": np.broadcast_to(rrrs_joint2_offset_x, _rrrs),
+            "rrrs_joint3_offset_x": np.broadcast_to(rrrs_joint3_offset_x, _rrrs),
+            "rrrs_link1_mass": np.broadcast_to(rrrs_link1_mass, _rrrs),
+            "rrrs_link2_mass": np.broadcast_to(rrrs_link2_mass, _rrrs),
+            "rrrs_link3_mass": np.broadcast_to(rrrs_link3_mass, _rrrs),
+            "rrrs_platform_joint_offset_x": np.broadcast_to(rrrs_platform_joint_offset_x, _rrrs),
+            "rrrs_platform_point_x": np.broadcast_to(rrrs_platform_point_x, _rrrs),
+            "rrrs_platform_point_y": np.broadcast_to(rrrs_platform_point_y, _rrrs),
+            "rrrs_platform_point_z": np.broadcast_to(rrrs_platform_point_z, _rrrs),
+            "size_rrrs": np.broadcast_to(size_rrrs, _rrrs),
+            "size_rrrs_t_8": np.broadcast_to(size_rrrs_t_8, _rrrs),
         },
     }
     return shared, legs
@@ -1307,29 +1309,29 @@ def _dynamics_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -1339,9 +1341,9 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -1382,10 +1384,10 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -2049,9 +2051,9 @@ def _dynamics_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -2633,29 +2635,29 @@ def _M_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -2665,9 +2667,9 @@ def _M_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -2708,10 +2710,10 @@ def _M_rrrrs(c, k, x, s, f):
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -3041,9 +3043,9 @@ def _M_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -3411,29 +3413,29 @@ def _Z_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -3443,9 +3445,9 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -3486,10 +3488,10 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -3910,9 +3912,9 @@ def _Z_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -4289,29 +4291,29 @@ def _H_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -4321,9 +4323,9 @@ def _H_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -4362,10 +4364,10 @@ def _H_rrrrs(c, k, x, s, f):
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*rrrrs_platform_joint_offset_x*s_4_rrrrs
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -4480,9 +4482,9 @@ def _H_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -4747,29 +4749,29 @@ def _required_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -4779,9 +4781,9 @@ def _required_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -4822,10 +4824,10 @@ def _required_rrrrs(c, k, x, s, f):
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -5286,9 +5288,9 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -5696,38 +5698,38 @@ def _inverse_kinematics_rrrrs(c, k, x, s, f):
     t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         - rrrrs_base_point_z
     )
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_r1_y = root_1_rrrrs*s_2_rrrrs - c_2_rrrrs_t*x_2_rrrrs_z
     # (rrrrs-K15) from the origin of joint 3 to the connection point
     x_3_rrrrs_x = c_2_rrrrs_t*root_1_rrrrs + s_2_rrrrs*x_2_rrrrs_z - rrrrs_joint3_offset_x
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -5739,9 +5741,9 @@ def _inverse_kinematics_rrrrs(c, k, x, s, f):
     x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
     inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
-    # (rrrrs-K10) displacement of joint 1
+    # (rrrrs-K12) displacement of joint 1
     q_1_rrrrs = (
     atan2(inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs, inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs)
     )
@@ -5806,9 +5808,9 @@ def _inverse_kinematics_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -5926,29 +5928,29 @@ def _joint_rates_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -5958,9 +5960,9 @@ def _joint_rates_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -6000,10 +6002,10 @@ def _joint_rates_rrrrs(c, k, x, s, f):
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -6134,9 +6136,9 @@ def _joint_rates_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -6325,29 +6327,29 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -6357,9 +6359,9 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -6400,10 +6402,10 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -6633,9 +6635,9 @@ def _joint_accelerations_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -6913,29 +6915,29 @@ def _legs_rrrrs(c, k, x, s, f):
     S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
     S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
     S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
     x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
     x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
@@ -6945,9 +6947,9 @@ def _legs_rrrrs(c, k, x, s, f):
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -6988,10 +6990,10 @@ def _legs_rrrrs(c, k, x, s, f):
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
     r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*r_3_rrrrs_t
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (rrrrs-V9) reciprocal vector 1
     axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
@@ -7419,9 +7421,9 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -7813,38 +7815,38 @@ def _potential_rrrrs(c, k, x, s, f):
     t_z + R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
         - rrrrs_base_point_z
     )
-    # (rrrrs-K2) component along the reference direction
+    # (rrrrs-K4) component along the reference direction
     px_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
     )
-    # (rrrrs-K3) component across the reference direction
+    # (rrrrs-K5) component across the reference direction
     py_1_rrrrs = (
     S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
     )
-    # (rrrrs-K5) squared amplitude
+    # (rrrrs-K7) squared amplitude
     rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
-    # (rrrrs-K7) root, with the sign of the branch
+    # (rrrrs-K9) root, with the sign of the branch
     root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
-    # (rrrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_rrrrs_t = (
     S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
-    # (rrrrs-K13) cosine of the angle of joint 2 from its reference direction
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
     c_2_rrrrs_t = sin(y_2_extra_rrrrs)
-    # (rrrrs-K14) sine of the angle of joint 2 from its reference direction
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
     s_2_rrrrs = cos(y_2_extra_rrrrs)
-    # (rrrrs-K12) from the origin of joint 2 to the connection point
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
     x_2_rrrrs_r1_y = root_1_rrrrs*s_2_rrrrs - c_2_rrrrs_t*x_2_rrrrs_z
     # (rrrrs-K15) from the origin of joint 3 to the connection point
     x_3_rrrrs_x = c_2_rrrrs_t*root_1_rrrrs + s_2_rrrrs*x_2_rrrrs_z - rrrrs_joint3_offset_x
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
     Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
     Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
-    # (rrrrs-K20) factor of cos in the equation of joint 3
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
     Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
-    # (rrrrs-K21) factor of sin in the equation of joint 3
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
     Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
     # (rrrrs-K22) squared amplitude
     rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
@@ -7865,10 +7867,10 @@ def _potential_rrrrs(c, k, x, s, f):
     c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
     # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
     s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
-    # (rrrrs-K8) cosine of the angle of joint 1 from its reference direction
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
-    # (rrrrs-K9) sine of the angle of joint 1 from its reference direction
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
     # (V1) potential energy
     b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs
@@ -7952,9 +7954,9 @@ def _potential_rrrs(c, k, x, s, f):
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
     Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
-    # (rrrs-K17) factor of cos in the equation of joint 2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
     Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
-    # (rrrs-K18) factor of sin in the equation of joint 2
+    # (rrrs-K18) factor of the sine in the equation of joint 2
     Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
     # (rrrs-K19) squared amplitude
     rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
@@ -8891,7 +8893,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

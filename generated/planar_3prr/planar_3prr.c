@@ -358,7 +358,7 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         const real prr_link2_inertia_zz = params->prr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1[] = {-1, -1, -1};
         const real branch_1 = signs_branch_1[leg];
-        /* (prr-K6) constant of the link */
+        /* (prr-K6) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
         /* (prr-K7) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_t = 1/uu_2_t;

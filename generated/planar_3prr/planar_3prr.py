@@ -253,6 +253,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prr = (len(_LEGS["prr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -284,7 +285,7 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (prr-K6) constant of the link
+    # (prr-K6) squared length, across the axis, of the direction fixed in link 2
     uu_2_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
     # (prr-K7) cosine of the angle of joint 2 from its reference direction
     inv_uu_2_t = 1.0/uu_2_t
@@ -318,11 +319,11 @@ def _prepare(p):
     potential_t = (
     prr_link1_mass*(prr_base_frame_xy*prr_base_point_x + prr_base_frame_yy*prr_base_point_y)
     )
-    total_prr = np.sum(np.broadcast_to(prr_link2_mass, (3,)))
-    total_prr_x = np.sum(np.broadcast_to(h_star_t_3, (3,)))
-    total_prr_y = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_prr_xx = np.sum(np.broadcast_to(J_star_t_5, (3,)))
-    total_prr_zz = np.sum(np.broadcast_to(J_star_t_6, (3,)))
+    total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
+    total_prr_x = np.sum(np.broadcast_to(h_star_t_3, _prr))
+    total_prr_y = np.sum(np.broadcast_to(h_star_t_4, _prr))
+    total_prr_xx = np.sum(np.broadcast_to(J_star_t_5, _prr))
+    total_prr_zz = np.sum(np.broadcast_to(J_star_t_6, _prr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prr
     # (L2) first moment about the platform origin
@@ -349,30 +350,30 @@ def _prepare(p):
     }
     legs = {
         "prr": {
-            "J_2_zz": np.broadcast_to(J_2_zz, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "inv_uu_2_t": np.broadcast_to(inv_uu_2_t, (3,)),
-            "potential_t": np.broadcast_to(potential_t, (3,)),
-            "prr_base_frame_xx": np.broadcast_to(prr_base_frame_xx, (3,)),
-            "prr_base_frame_xy": np.broadcast_to(prr_base_frame_xy, (3,)),
-            "prr_base_frame_yx": np.broadcast_to(prr_base_frame_yx, (3,)),
-            "prr_base_frame_yy": np.broadcast_to(prr_base_frame_yy, (3,)),
-            "prr_base_point_x": np.broadcast_to(prr_base_point_x, (3,)),
-            "prr_base_point_y": np.broadcast_to(prr_base_point_y, (3,)),
-            "prr_link1_mass": np.broadcast_to(prr_link1_mass, (3,)),
-            "prr_link2_mass": np.broadcast_to(prr_link2_mass, (3,)),
-            "prr_platform_joint_offset_x": np.broadcast_to(prr_platform_joint_offset_x, (3,)),
-            "prr_platform_point_x": np.broadcast_to(prr_platform_point_x, (3,)),
-            "prr_platform_point_y": np.broadcast_to(prr_platform_point_y, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "uu_2_t": np.broadcast_to(uu_2_t, (3,)),
+            "J_2_zz": np.broadcast_to(J_2_zz, _prr),
+            "b_r0_x": np.broadcast_to(b_r0_x, _prr),
+            "branch_1": np.broadcast_to(branch_1, _prr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _prr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _prr),
+            "h_1_x": np.broadcast_to(h_1_x, _prr),
+            "h_1_y": np.broadcast_to(h_1_y, _prr),
+            "h_2_x": np.broadcast_to(h_2_x, _prr),
+            "h_2_y": np.broadcast_to(h_2_y, _prr),
+            "inv_uu_2_t": np.broadcast_to(inv_uu_2_t, _prr),
+            "potential_t": np.broadcast_to(potential_t, _prr),
+            "prr_base_frame_xx": np.broadcast_to(prr_base_frame_xx, _prr),
+            "prr_base_frame_xy": np.broadcast_to(prr_base_frame_xy, _prr),
+            "prr_base_frame_yx": np.broadcast_to(prr_base_frame_yx, _prr),
+            "prr_base_frame_yy": np.broadcast_to(prr_base_frame_yy, _prr),
+            "prr_base_point_x": np.broadcast_to(prr_base_point_x, _prr),
+            "prr_base_point_y": np.broadcast_to(prr_base_point_y, _prr),
+            "prr_link1_mass": np.broadcast_to(prr_link1_mass, _prr),
+            "prr_link2_mass": np.broadcast_to(prr_link2_mass, _prr),
+            "prr_platform_joint_offset_x": np.broadcast_to(prr_platform_joint_offset_x, _prr),
+            "prr_platform_point_x": np.broadcast_to(prr_platform_point_x, _prr),
+            "prr_platform_point_y": np.broadcast_to(prr_platform_point_y, _prr),
+            "size": np.broadcast_to(size, _prr),
+            "uu_2_t": np.broadcast_to(uu_2_t, _prr),
         },
     }
     return shared, legs
@@ -1930,7 +1931,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -368,7 +368,7 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1[] = {1, 1, 1};
         const real branch_1 = signs_branch_1[leg];
-        /* (rrr-K17) constant of the link */
+        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -593,11 +593,11 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -934,11 +934,11 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -1200,11 +1200,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -1442,11 +1442,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -1657,11 +1657,11 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -1891,11 +1891,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2042,11 +2042,11 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2231,11 +2231,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2452,11 +2452,11 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
@@ -2677,11 +2677,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1 = px_1*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1 = py_1*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;

@@ -260,6 +260,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rrr = (len(_LEGS["rrr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -293,7 +294,7 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (rrr-K17) constant of the link
+    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x
@@ -342,11 +343,11 @@ def _prepare(p):
     # (V1) potential energy
     b_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, (3,)))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, (3,)))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_5, (3,)))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_6, (3,)))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_5, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_6, _rrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr
     # (L2) first moment about the platform origin
@@ -373,36 +374,36 @@ def _prepare(p):
     }
     legs = {
         "rrr": {
-            "J_1_zz": np.broadcast_to(J_1_zz, (3,)),
-            "J_2_zz": np.broadcast_to(J_2_zz, (3,)),
-            "Kd_1_t_2": np.broadcast_to(Kd_1_t_2, (3,)),
-            "Kd_1_t_3": np.broadcast_to(Kd_1_t_3, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "inv_Kd_1_t_5": np.broadcast_to(inv_Kd_1_t_5, (3,)),
-            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, (3,)),
-            "inv_uu_2_t": np.broadcast_to(inv_uu_2_t, (3,)),
-            "rho2_1_t": np.broadcast_to(rho2_1_t, (3,)),
-            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, (3,)),
-            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, (3,)),
-            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, (3,)),
-            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, (3,)),
-            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, (3,)),
-            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, (3,)),
-            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, (3,)),
-            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, (3,)),
-            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, (3,)),
-            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, (3,)),
-            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, (3,)),
-            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, (3,)),
-            "size": np.broadcast_to(size, (3,)),
+            "J_1_zz": np.broadcast_to(J_1_zz, _rrr),
+            "J_2_zz": np.broadcast_to(J_2_zz, _rrr),
+            "Kd_1_t_2": np.broadcast_to(Kd_1_t_2, _rrr),
+            "Kd_1_t_3": np.broadcast_to(Kd_1_t_3, _rrr),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rrr),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rrr),
+            "branch_1": np.broadcast_to(branch_1, _rrr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rrr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rrr),
+            "h_1_x": np.broadcast_to(h_1_x, _rrr),
+            "h_1_y": np.broadcast_to(h_1_y, _rrr),
+            "h_2_x": np.broadcast_to(h_2_x, _rrr),
+            "h_2_y": np.broadcast_to(h_2_y, _rrr),
+            "inv_Kd_1_t_5": np.broadcast_to(inv_Kd_1_t_5, _rrr),
+            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_uu_2_t": np.broadcast_to(inv_uu_2_t, _rrr),
+            "rho2_1_t": np.broadcast_to(rho2_1_t, _rrr),
+            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
+            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, _rrr),
+            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, _rrr),
+            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, _rrr),
+            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, _rrr),
+            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, _rrr),
+            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, _rrr),
+            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, _rrr),
+            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, _rrr),
+            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, _rrr),
+            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, _rrr),
+            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, _rrr),
+            "size": np.broadcast_to(size, _rrr),
         },
     }
     return shared, legs
@@ -615,11 +616,11 @@ def _dynamics_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -811,11 +812,11 @@ def _M_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -953,11 +954,11 @@ def _Z_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1092,11 +1093,11 @@ def _H_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1206,11 +1207,11 @@ def _required_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1352,11 +1353,11 @@ def _inverse_kinematics_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1421,11 +1422,11 @@ def _joint_rates_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1521,11 +1522,11 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1645,11 +1646,11 @@ def _legs_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -1784,11 +1785,11 @@ def _potential_rrr(c, k, x, s, f):
     Kd_1 = 0.5*Kd_1_t + Kd_1_t_2 - Kd_1_t_3
     # (rrr-K3) component along the reference direction
     px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1 = px_1*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1 = py_1*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1
@@ -2282,7 +2283,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

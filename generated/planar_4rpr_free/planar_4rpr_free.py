@@ -293,6 +293,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rpr = (len(_LEGS["rpr"]),)
+    _rpr2 = (len(_LEGS["rpr2"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -380,11 +382,11 @@ def _prepare(p):
     # (V1) potential energy
     b_rpr_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
     b_rpr_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, (3,)))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, (3,)))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, (3,)))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_5, (3,)))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_6, (3,)))
+    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_5, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_6, _rpr))
     # (rpr2-G1) size of the leg, the measure of what is near singular
     size_rpr2_t = rpr2_base_point_x*rpr2_base_point_x + rpr2_base_point_y*rpr2_base_point_y
     size_rpr2_t_2 = rpr2_platform_point_y*rpr2_platform_point_y
@@ -424,11 +426,11 @@ def _prepare(p):
     # (V1) potential energy
     b_rpr2_r0_x = rpr2_base_frame_xx*rpr2_base_point_x + rpr2_base_frame_yx*rpr2_base_point_y
     b_rpr2_r0_y = rpr2_base_frame_xy*rpr2_base_point_x + rpr2_base_frame_yy*rpr2_base_point_y
-    total_rpr2 = np.sum(np.broadcast_to(rpr2_link2_mass, (1,)))
-    total_rpr2_x = np.sum(np.broadcast_to(h_star_t_5, (1,)))
-    total_rpr2_y = np.sum(np.broadcast_to(h_star_t_6, (1,)))
-    total_rpr2_xx = np.sum(np.broadcast_to(J_star_t_7, (1,)))
-    total_rpr2_zz = np.sum(np.broadcast_to(J_star_t_8, (1,)))
+    total_rpr2 = np.sum(np.broadcast_to(rpr2_link2_mass, _rpr2))
+    total_rpr2_x = np.sum(np.broadcast_to(h_star_t_5, _rpr2))
+    total_rpr2_y = np.sum(np.broadcast_to(h_star_t_6, _rpr2))
+    total_rpr2_xx = np.sum(np.broadcast_to(J_star_t_7, _rpr2))
+    total_rpr2_zz = np.sum(np.broadcast_to(J_star_t_8, _rpr2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr + total_rpr2
     # (L2) first moment about the platform origin
@@ -455,52 +457,52 @@ def _prepare(p):
     }
     legs = {
         "rpr": {
-            "J_group_1_rpr_zz": np.broadcast_to(J_group_1_rpr_zz, (3,)),
-            "b_rpr_r0_x": np.broadcast_to(b_rpr_r0_x, (3,)),
-            "b_rpr_r0_y": np.broadcast_to(b_rpr_r0_y, (3,)),
-            "branch_1_rpr": np.broadcast_to(branch_1_rpr, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "h_1_rpr_x": np.broadcast_to(h_1_rpr_x, (3,)),
-            "h_1_rpr_y": np.broadcast_to(h_1_rpr_y, (3,)),
-            "h_2_rpr_x": np.broadcast_to(h_2_rpr_x, (3,)),
-            "h_2_rpr_y": np.broadcast_to(h_2_rpr_y, (3,)),
-            "rpr_base_frame_xx": np.broadcast_to(rpr_base_frame_xx, (3,)),
-            "rpr_base_frame_xy": np.broadcast_to(rpr_base_frame_xy, (3,)),
-            "rpr_base_frame_yx": np.broadcast_to(rpr_base_frame_yx, (3,)),
-            "rpr_base_frame_yy": np.broadcast_to(rpr_base_frame_yy, (3,)),
-            "rpr_base_point_x": np.broadcast_to(rpr_base_point_x, (3,)),
-            "rpr_base_point_y": np.broadcast_to(rpr_base_point_y, (3,)),
-            "rpr_link1_mass": np.broadcast_to(rpr_link1_mass, (3,)),
-            "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, (3,)),
-            "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, (3,)),
-            "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, (3,)),
-            "size_rpr": np.broadcast_to(size_rpr, (3,)),
-            "size_rpr_t_4": np.broadcast_to(size_rpr_t_4, (3,)),
+            "J_group_1_rpr_zz": np.broadcast_to(J_group_1_rpr_zz, _rpr),
+            "b_rpr_r0_x": np.broadcast_to(b_rpr_r0_x, _rpr),
+            "b_rpr_r0_y": np.broadcast_to(b_rpr_r0_y, _rpr),
+            "branch_1_rpr": np.broadcast_to(branch_1_rpr, _rpr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rpr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rpr),
+            "h_1_rpr_x": np.broadcast_to(h_1_rpr_x, _rpr),
+            "h_1_rpr_y": np.broadcast_to(h_1_rpr_y, _rpr),
+            "h_2_rpr_x": np.broadcast_to(h_2_rpr_x, _rpr),
+            "h_2_rpr_y": np.broadcast_to(h_2_rpr_y, _rpr),
+            "rpr_base_frame_xx": np.broadcast_to(rpr_base_frame_xx, _rpr),
+            "rpr_base_frame_xy": np.broadcast_to(rpr_base_frame_xy, _rpr),
+            "rpr_base_frame_yx": np.broadcast_to(rpr_base_frame_yx, _rpr),
+            "rpr_base_frame_yy": np.broadcast_to(rpr_base_frame_yy, _rpr),
+            "rpr_base_point_x": np.broadcast_to(rpr_base_point_x, _rpr),
+            "rpr_base_point_y": np.broadcast_to(rpr_base_point_y, _rpr),
+            "rpr_link1_mass": np.broadcast_to(rpr_link1_mass, _rpr),
+            "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, _rpr),
+            "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, _rpr),
+            "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, _rpr),
+            "size_rpr": np.broadcast_to(size_rpr, _rpr),
+            "size_rpr_t_4": np.broadcast_to(size_rpr_t_4, _rpr),
         },
         "rpr2": {
-            "J_group_1_rpr2_zz": np.broadcast_to(J_group_1_rpr2_zz, (1,)),
-            "b_rpr2_r0_x": np.broadcast_to(b_rpr2_r0_x, (1,)),
-            "b_rpr2_r0_y": np.broadcast_to(b_rpr2_r0_y, (1,)),
-            "branch_1_rpr2": np.broadcast_to(branch_1_rpr2, (1,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (1,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (1,)),
-            "h_1_rpr2_x": np.broadcast_to(h_1_rpr2_x, (1,)),
-            "h_1_rpr2_y": np.broadcast_to(h_1_rpr2_y, (1,)),
-            "h_2_rpr2_x": np.broadcast_to(h_2_rpr2_x, (1,)),
-            "h_2_rpr2_y": np.broadcast_to(h_2_rpr2_y, (1,)),
-            "rpr2_base_frame_xx": np.broadcast_to(rpr2_base_frame_xx, (1,)),
-            "rpr2_base_frame_xy": np.broadcast_to(rpr2_base_frame_xy, (1,)),
-            "rpr2_base_frame_yx": np.broadcast_to(rpr2_base_frame_yx, (1,)),
-            "rpr2_base_frame_yy": np.broadcast_to(rpr2_base_frame_yy, (1,)),
-            "rpr2_base_point_x": np.broadcast_to(rpr2_base_point_x, (1,)),
-            "rpr2_base_point_y": np.broadcast_to(rpr2_base_point_y, (1,)),
-            "rpr2_link1_mass": np.broadcast_to(rpr2_link1_mass, (1,)),
-            "rpr2_link2_mass": np.broadcast_to(rpr2_link2_mass, (1,)),
-            "rpr2_platform_point_x": np.broadcast_to(rpr2_platform_point_x, (1,)),
-            "rpr2_platform_point_y": np.broadcast_to(rpr2_platform_point_y, (1,)),
-            "size_rpr2": np.broadcast_to(size_rpr2, (1,)),
-            "size_rpr2_t_4": np.broadcast_to(size_rpr2_t_4, (1,)),
+            "J_group_1_rpr2_zz": np.broadcast_to(J_group_1_rpr2_zz, _rpr2),
+            "b_rpr2_r0_x": np.broadcast_to(b_rpr2_r0_x, _rpr2),
+            "b_rpr2_r0_y": np.broadcast_to(b_rpr2_r0_y, _rpr2),
+            "branch_1_rpr2": np.broadcast_to(branch_1_rpr2, _rpr2),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rpr2),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rpr2),
+            "h_1_rpr2_x": np.broadcast_to(h_1_rpr2_x, _rpr2),
+            "h_1_rpr2_y": np.broadcast_to(h_1_rpr2_y, _rpr2),
+            "h_2_rpr2_x": np.broadcast_to(h_2_rpr2_x, _rpr2),
+            "h_2_rpr2_y": np.broadcast_to(h_2_rpr2_y, _rpr2),
+            "rpr2_base_frame_xx": np.broadcast_to(rpr2_base_frame_xx, _rpr2),
+            "rpr2_base_frame_xy": np.broadcast_to(rpr2_base_frame_xy, _rpr2),
+            "rpr2_base_frame_yx": np.broadcast_to(rpr2_base_frame_yx, _rpr2),
+            "rpr2_base_frame_yy": np.broadcast_to(rpr2_base_frame_yy, _rpr2),
+            "rpr2_base_point_x": np.broadcast_to(rpr2_base_point_x, _rpr2),
+            "rpr2_base_point_y": np.broadcast_to(rpr2_base_point_y, _rpr2),
+            "rpr2_link1_mass": np.broadcast_to(rpr2_link1_mass, _rpr2),
+            "rpr2_link2_mass": np.broadcast_to(rpr2_link2_mass, _rpr2),
+            "rpr2_platform_point_x": np.broadcast_to(rpr2_platform_point_x, _rpr2),
+            "rpr2_platform_point_y": np.broadcast_to(rpr2_platform_point_y, _rpr2),
+            "size_rpr2": np.broadcast_to(size_rpr2, _rpr2),
+            "size_rpr2_t_4": np.broadcast_to(size_rpr2_t_4, _rpr2),
         },
     }
     return shared, legs
@@ -2621,7 +2623,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -537,7 +537,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_rrr[] = {1};
         const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) constant of the link */
+        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -645,7 +645,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real prr_link2_inertia_zz = params->prr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_prr[] = {-1};
         const real branch_1_prr = signs_branch_1_prr[leg];
-        /* (prr-K6) constant of the link */
+        /* (prr-K6) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_prr_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
         /* (prr-K7) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_prr_t = 1/uu_2_prr_t;
@@ -995,11 +995,11 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1678,11 +1678,11 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2229,11 +2229,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2710,11 +2710,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3146,11 +3146,11 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3639,11 +3639,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3940,11 +3940,11 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -4311,11 +4311,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -4779,11 +4779,11 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -5250,11 +5250,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;

@@ -337,6 +337,9 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rpr = (len(_LEGS["rpr"]),)
+    _rrr = (len(_LEGS["rrr"]),)
+    _prr = (len(_LEGS["prr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -443,12 +446,12 @@ def _prepare(p):
     # (V1) potential energy
     b_rpr_r0_x = rpr_base_frame_xx*rpr_base_point_x + rpr_base_frame_yx*rpr_base_point_y
     b_rpr_r0_y = rpr_base_frame_xy*rpr_base_point_x + rpr_base_frame_yy*rpr_base_point_y
-    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, (1,)))
-    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, (1,)))
-    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, (1,)))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_5, (1,)))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_6, (1,)))
-    # (rrr-K17) constant of the link
+    total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
+    total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
+    total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_5, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_6, _rpr))
+    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
@@ -499,12 +502,12 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, (1,)))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, (1,)))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, (1,)))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, (1,)))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, (1,)))
-    # (prr-K6) constant of the link
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
+    # (prr-K6) squared length, across the axis, of the direction fixed in link 2
     uu_2_prr_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x
     # (prr-K7) cosine of the angle of joint 2 from its reference direction
     inv_uu_2_prr_t = 1.0/uu_2_prr_t
@@ -540,11 +543,11 @@ def _prepare(p):
     potential_t = (
     prr_link1_mass*(prr_base_frame_xy*prr_base_point_x + prr_base_frame_yy*prr_base_point_y)
     )
-    total_prr = np.sum(np.broadcast_to(prr_link2_mass, (1,)))
-    total_prr_x = np.sum(np.broadcast_to(h_star_t_7, (1,)))
-    total_prr_y = np.sum(np.broadcast_to(h_star_t_8, (1,)))
-    total_prr_xx = np.sum(np.broadcast_to(J_star_t_9, (1,)))
-    total_prr_zz = np.sum(np.broadcast_to(J_star_t_10, (1,)))
+    total_prr = np.sum(np.broadcast_to(prr_link2_mass, _prr))
+    total_prr_x = np.sum(np.broadcast_to(h_star_t_7, _prr))
+    total_prr_y = np.sum(np.broadcast_to(h_star_t_8, _prr))
+    total_prr_xx = np.sum(np.broadcast_to(J_star_t_9, _prr))
+    total_prr_zz = np.sum(np.broadcast_to(J_star_t_10, _prr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prr + total_rpr + total_rrr
     # (L2) first moment about the platform origin
@@ -571,86 +574,86 @@ def _prepare(p):
     }
     legs = {
         "rpr": {
-            "J_group_1_rpr_zz": np.broadcast_to(J_group_1_rpr_zz, (1,)),
-            "b_rpr_r0_x": np.broadcast_to(b_rpr_r0_x, (1,)),
-            "b_rpr_r0_y": np.broadcast_to(b_rpr_r0_y, (1,)),
-            "branch_1_rpr": np.broadcast_to(branch_1_rpr, (1,)),
-            "g_r0_x_3": np.broadcast_to(g_r0_x_3, (1,)),
-            "g_r0_y_3": np.broadcast_to(g_r0_y_3, (1,)),
-            "h_1_rpr_x": np.broadcast_to(h_1_rpr_x, (1,)),
-            "h_1_rpr_y": np.broadcast_to(h_1_rpr_y, (1,)),
-            "h_2_rpr_x": np.broadcast_to(h_2_rpr_x, (1,)),
-            "h_2_rpr_y": np.broadcast_to(h_2_rpr_y, (1,)),
-            "rpr_base_frame_xx": np.broadcast_to(rpr_base_frame_xx, (1,)),
-            "rpr_base_frame_xy": np.broadcast_to(rpr_base_frame_xy, (1,)),
-            "rpr_base_frame_yx": np.broadcast_to(rpr_base_frame_yx, (1,)),
-            "rpr_base_frame_yy": np.broadcast_to(rpr_base_frame_yy, (1,)),
-            "rpr_base_point_x": np.broadcast_to(rpr_base_point_x, (1,)),
-            "rpr_base_point_y": np.broadcast_to(rpr_base_point_y, (1,)),
-            "rpr_link1_mass": np.broadcast_to(rpr_link1_mass, (1,)),
-            "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, (1,)),
-            "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, (1,)),
-            "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, (1,)),
-            "size_rpr": np.broadcast_to(size_rpr, (1,)),
-            "size_rpr_t_4": np.broadcast_to(size_rpr_t_4, (1,)),
+            "J_group_1_rpr_zz": np.broadcast_to(J_group_1_rpr_zz, _rpr),
+            "b_rpr_r0_x": np.broadcast_to(b_rpr_r0_x, _rpr),
+            "b_rpr_r0_y": np.broadcast_to(b_rpr_r0_y, _rpr),
+            "branch_1_rpr": np.broadcast_to(branch_1_rpr, _rpr),
+            "g_r0_x_3": np.broadcast_to(g_r0_x_3, _rpr),
+            "g_r0_y_3": np.broadcast_to(g_r0_y_3, _rpr),
+            "h_1_rpr_x": np.broadcast_to(h_1_rpr_x, _rpr),
+            "h_1_rpr_y": np.broadcast_to(h_1_rpr_y, _rpr),
+            "h_2_rpr_x": np.broadcast_to(h_2_rpr_x, _rpr),
+            "h_2_rpr_y": np.broadcast_to(h_2_rpr_y, _rpr),
+            "rpr_base_frame_xx": np.broadcast_to(rpr_base_frame_xx, _rpr),
+            "rpr_base_frame_xy": np.broadcast_to(rpr_base_frame_xy, _rpr),
+            "rpr_base_frame_yx": np.broadcast_to(rpr_base_frame_yx, _rpr),
+            "rpr_base_frame_yy": np.broadcast_to(rpr_base_frame_yy, _rpr),
+            "rpr_base_point_x": np.broadcast_to(rpr_base_point_x, _rpr),
+            "rpr_base_point_y": np.broadcast_to(rpr_base_point_y, _rpr),
+            "rpr_link1_mass": np.broadcast_to(rpr_link1_mass, _rpr),
+            "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, _rpr),
+            "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, _rpr),
+            "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, _rpr),
+            "size_rpr": np.broadcast_to(size_rpr, _rpr),
+            "size_rpr_t_4": np.broadcast_to(size_rpr_t_4, _rpr),
         },
         "rrr": {
-            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, (1,)),
-            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, (1,)),
-            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, (1,)),
-            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, (1,)),
-            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, (1,)),
-            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, (1,)),
-            "branch_1_rrr": np.broadcast_to(branch_1_rrr, (1,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (1,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (1,)),
-            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, (1,)),
-            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, (1,)),
-            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, (1,)),
-            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, (1,)),
-            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, (1,)),
-            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, (1,)),
-            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, (1,)),
-            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, (1,)),
-            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, (1,)),
-            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, (1,)),
-            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, (1,)),
-            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, (1,)),
-            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, (1,)),
-            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, (1,)),
-            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, (1,)),
-            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, (1,)),
-            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, (1,)),
-            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, (1,)),
-            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, (1,)),
-            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, (1,)),
-            "size_rrr": np.broadcast_to(size_rrr, (1,)),
+            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
+            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
+            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
+            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
+            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
+            "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr),
+            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
+            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, _rrr),
+            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
+            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
+            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
+            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
+            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
+            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
+            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, _rrr),
+            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, _rrr),
+            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, _rrr),
+            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, _rrr),
+            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, _rrr),
+            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, _rrr),
+            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, _rrr),
+            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, _rrr),
+            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, _rrr),
+            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, _rrr),
+            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, _rrr),
+            "size_rrr": np.broadcast_to(size_rrr, _rrr),
         },
         "prr": {
-            "J_2_prr_zz": np.broadcast_to(J_2_prr_zz, (1,)),
-            "b_prr_r0_x": np.broadcast_to(b_prr_r0_x, (1,)),
-            "branch_1_prr": np.broadcast_to(branch_1_prr, (1,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (1,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (1,)),
-            "h_1_prr_x": np.broadcast_to(h_1_prr_x, (1,)),
-            "h_1_prr_y": np.broadcast_to(h_1_prr_y, (1,)),
-            "h_2_prr_x": np.broadcast_to(h_2_prr_x, (1,)),
-            "h_2_prr_y": np.broadcast_to(h_2_prr_y, (1,)),
-            "inv_uu_2_prr_t": np.broadcast_to(inv_uu_2_prr_t, (1,)),
-            "potential_t": np.broadcast_to(potential_t, (1,)),
-            "prr_base_frame_xx": np.broadcast_to(prr_base_frame_xx, (1,)),
-            "prr_base_frame_xy": np.broadcast_to(prr_base_frame_xy, (1,)),
-            "prr_base_frame_yx": np.broadcast_to(prr_base_frame_yx, (1,)),
-            "prr_base_frame_yy": np.broadcast_to(prr_base_frame_yy, (1,)),
-            "prr_base_point_x": np.broadcast_to(prr_base_point_x, (1,)),
-            "prr_base_point_y": np.broadcast_to(prr_base_point_y, (1,)),
-            "prr_link1_mass": np.broadcast_to(prr_link1_mass, (1,)),
-            "prr_link2_mass": np.broadcast_to(prr_link2_mass, (1,)),
-            "prr_platform_joint_offset_x": np.broadcast_to(prr_platform_joint_offset_x, (1,)),
-            "prr_platform_point_x": np.broadcast_to(prr_platform_point_x, (1,)),
-            "prr_platform_point_y": np.broadcast_to(prr_platform_point_y, (1,)),
-            "size_prr": np.broadcast_to(size_prr, (1,)),
-            "uu_2_prr_t": np.broadcast_to(uu_2_prr_t, (1,)),
+            "J_2_prr_zz": np.broadcast_to(J_2_prr_zz, _prr),
+            "b_prr_r0_x": np.broadcast_to(b_prr_r0_x, _prr),
+            "branch_1_prr": np.broadcast_to(branch_1_prr, _prr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _prr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _prr),
+            "h_1_prr_x": np.broadcast_to(h_1_prr_x, _prr),
+            "h_1_prr_y": np.broadcast_to(h_1_prr_y, _prr),
+            "h_2_prr_x": np.broadcast_to(h_2_prr_x, _prr),
+            "h_2_prr_y": np.broadcast_to(h_2_prr_y, _prr),
+            "inv_uu_2_prr_t": np.broadcast_to(inv_uu_2_prr_t, _prr),
+            "potential_t": np.broadcast_to(potential_t, _prr),
+            "prr_base_frame_xx": np.broadcast_to(prr_base_frame_xx, _prr),
+            "prr_base_frame_xy": np.broadcast_to(prr_base_frame_xy, _prr),
+            "prr_base_frame_yx": np.broadcast_to(prr_base_frame_yx, _prr),
+            "prr_base_frame_yy": np.broadcast_to(prr_base_frame_yy, _prr),
+            "prr_base_point_x": np.broadcast_to(prr_base_point_x, _prr),
+            "prr_base_point_y": np.broadcast_to(prr_base_point_y, _prr),
+            "prr_link1_mass": np.broadcast_to(prr_link1_mass, _prr),
+            "prr_link2_mass": np.broadcast_to(prr_link2_mass, _prr),
+            "prr_platform_joint_offset_x": np.broadcast_to(prr_platform_joint_offset_x, _prr),
+            "prr_platform_point_x": np.broadcast_to(prr_platform_point_x, _prr),
+            "prr_platform_point_y": np.broadcast_to(prr_platform_point_y, _prr),
+            "size_prr": np.broadcast_to(size_prr, _prr),
+            "uu_2_prr_t": np.broadcast_to(uu_2_prr_t, _prr),
         },
     }
     return shared, legs
@@ -953,11 +956,11 @@ def _dynamics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1344,11 +1347,11 @@ def _M_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1642,11 +1645,11 @@ def _Z_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1907,11 +1910,11 @@ def _H_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2140,11 +2143,11 @@ def _required_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2431,11 +2434,11 @@ def _inverse_kinematics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2567,11 +2570,11 @@ def _joint_rates_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2755,11 +2758,11 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -3024,11 +3027,11 @@ def _legs_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -3319,11 +3322,11 @@ def _potential_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -4186,7 +4189,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

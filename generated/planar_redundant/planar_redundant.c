@@ -438,7 +438,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real prrr_link3_inertia_zz = params->prrr_link3_inertia[leg][2][2];
         static const signed char signs_branch_2_prrr[] = {1};
         const real branch_2_prrr = signs_branch_2_prrr[leg];
-        /* (prrr-K18) constant of the link */
+        /* (prrr-K18) squared length, across the axis, of the direction fixed in link 3 */
         const real uu_3_prrr_t = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x;
         /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
@@ -560,7 +560,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real rrr_link2_inertia_zz = params->rrr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_rrr[] = {1, 1};
         const real branch_1_rrr = signs_branch_1_rrr[leg];
-        /* (rrr-K17) constant of the link */
+        /* (rrr-K17) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x;
         /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 1 */
@@ -795,9 +795,9 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -1119,11 +1119,11 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -1514,9 +1514,9 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -1723,11 +1723,11 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2036,9 +2036,9 @@ INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_valu
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -2228,11 +2228,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2503,9 +2503,9 @@ INLINE void H_legs_prrr(const prepared *m, size_t leg, size_t legs, const H_valu
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -2605,11 +2605,11 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -2845,9 +2845,9 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -3060,11 +3060,11 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3332,9 +3332,9 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t leg, size_t l
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -3411,11 +3411,11 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3583,9 +3583,9 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t leg, size_t legs, co
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -3693,11 +3693,11 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -3905,9 +3905,9 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t leg, size_t 
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -4042,11 +4042,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -4288,9 +4288,9 @@ INLINE void legs_legs_prrr(const prepared *m, size_t leg, size_t legs, const leg
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -4478,11 +4478,11 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
@@ -4730,9 +4730,9 @@ INLINE void potential_legs_prrr(const prepared *m, size_t leg, size_t legs, cons
            joint 2 */
         const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
         const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
-        /* (prrr-K7) factor of cos in the equation of joint 2 */
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
         const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
-        /* (prrr-K8) factor of sin in the equation of joint 2 */
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
         const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
         /* (prrr-K9) squared amplitude */
         const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
@@ -4824,11 +4824,11 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
         const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
         /* (rrr-K3) component along the reference direction */
         const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
-        /* (rrr-K6) factor of cos in the equation of joint 1 */
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
         const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K4) component across the reference direction */
         const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
-        /* (rrr-K7) factor of sin in the equation of joint 1 */
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
         const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
         /* (rrr-K8) squared amplitude */
         const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;

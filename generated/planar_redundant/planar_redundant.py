@@ -321,6 +321,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prrr = (len(_LEGS["prrr"]),)
+    _rrr = (len(_LEGS["rrr"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     platform_mass = p.platform_mass
@@ -376,7 +378,7 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (prrr-K18) constant of the link
+    # (prrr-K18) squared length, across the axis, of the direction fixed in link 3
     uu_3_prrr_t = prrr_platform_joint_offset_x*prrr_platform_joint_offset_x
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = prrr_joint3_offset_x*prrr_joint3_offset_x
@@ -434,12 +436,12 @@ def _prepare(p):
     b_prrr_r0_y = -prrr_base_frame_xx*prrr_base_point_x - prrr_base_frame_yx*prrr_base_point_y
     potential_t = b_prrr_r0_y*prrr_link1_mass
     potential_t_2 = b_prrr_r0_y*prrr_link2_mass
-    total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, (1,)))
-    total_prrr_x = np.sum(np.broadcast_to(h_star_t_3, (1,)))
-    total_prrr_y = np.sum(np.broadcast_to(h_star_t_4, (1,)))
-    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_5, (1,)))
-    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_6, (1,)))
-    # (rrr-K17) constant of the link
+    total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, _prrr))
+    total_prrr_x = np.sum(np.broadcast_to(h_star_t_3, _prrr))
+    total_prrr_y = np.sum(np.broadcast_to(h_star_t_4, _prrr))
+    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_5, _prrr))
+    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_6, _prrr))
+    # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
@@ -490,11 +492,11 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
-    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, (2,)))
-    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, (2,)))
-    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, (2,)))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, (2,)))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, (2,)))
+    total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
+    total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
+    total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prrr + total_rrr
     # (L2) first moment about the platform origin
@@ -521,73 +523,73 @@ def _prepare(p):
     }
     legs = {
         "prrr": {
-            "J_2_prrr_zz": np.broadcast_to(J_2_prrr_zz, (1,)),
-            "J_3_prrr_zz": np.broadcast_to(J_3_prrr_zz, (1,)),
-            "Kd_2_prrr_t_2": np.broadcast_to(Kd_2_prrr_t_2, (1,)),
-            "Kd_2_prrr_t_3": np.broadcast_to(Kd_2_prrr_t_3, (1,)),
-            "b_prrr_r0_x": np.broadcast_to(b_prrr_r0_x, (1,)),
-            "branch_2_prrr": np.broadcast_to(branch_2_prrr, (1,)),
-            "f_1_prrr_o_x": np.broadcast_to(f_1_prrr_o_x, (1,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (1,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (1,)),
-            "h_1_prrr_x": np.broadcast_to(h_1_prrr_x, (1,)),
-            "h_1_prrr_y": np.broadcast_to(h_1_prrr_y, (1,)),
-            "h_2_prrr_x": np.broadcast_to(h_2_prrr_x, (1,)),
-            "h_2_prrr_y": np.broadcast_to(h_2_prrr_y, (1,)),
-            "h_3_prrr_x": np.broadcast_to(h_3_prrr_x, (1,)),
-            "h_3_prrr_y": np.broadcast_to(h_3_prrr_y, (1,)),
-            "inv_Kd_2_prrr_t": np.broadcast_to(inv_Kd_2_prrr_t, (1,)),
-            "inv_prrr_platform_joint_offset_x": np.broadcast_to(inv_prrr_platform_joint_offset_x, (1,)),
-            "inv_uu_3_prrr_t": np.broadcast_to(inv_uu_3_prrr_t, (1,)),
-            "potential_t": np.broadcast_to(potential_t, (1,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (1,)),
-            "prrr_base_frame_xx": np.broadcast_to(prrr_base_frame_xx, (1,)),
-            "prrr_base_frame_xy": np.broadcast_to(prrr_base_frame_xy, (1,)),
-            "prrr_base_frame_yx": np.broadcast_to(prrr_base_frame_yx, (1,)),
-            "prrr_base_frame_yy": np.broadcast_to(prrr_base_frame_yy, (1,)),
-            "prrr_base_point_x": np.broadcast_to(prrr_base_point_x, (1,)),
-            "prrr_base_point_y": np.broadcast_to(prrr_base_point_y, (1,)),
-            "prrr_joint3_offset_x": np.broadcast_to(prrr_joint3_offset_x, (1,)),
-            "prrr_link1_mass": np.broadcast_to(prrr_link1_mass, (1,)),
-            "prrr_link2_mass": np.broadcast_to(prrr_link2_mass, (1,)),
-            "prrr_link3_mass": np.broadcast_to(prrr_link3_mass, (1,)),
-            "prrr_platform_joint_offset_x": np.broadcast_to(prrr_platform_joint_offset_x, (1,)),
-            "prrr_platform_point_x": np.broadcast_to(prrr_platform_point_x, (1,)),
-            "prrr_platform_point_y": np.broadcast_to(prrr_platform_point_y, (1,)),
-            "rho2_2_prrr_t": np.broadcast_to(rho2_2_prrr_t, (1,)),
-            "size_prrr": np.broadcast_to(size_prrr, (1,)),
+            "J_2_prrr_zz": np.broadcast_to(J_2_prrr_zz, _prrr),
+            "J_3_prrr_zz": np.broadcast_to(J_3_prrr_zz, _prrr),
+            "Kd_2_prrr_t_2": np.broadcast_to(Kd_2_prrr_t_2, _prrr),
+            "Kd_2_prrr_t_3": np.broadcast_to(Kd_2_prrr_t_3, _prrr),
+            "b_prrr_r0_x": np.broadcast_to(b_prrr_r0_x, _prrr),
+            "branch_2_prrr": np.broadcast_to(branch_2_prrr, _prrr),
+            "f_1_prrr_o_x": np.broadcast_to(f_1_prrr_o_x, _prrr),
+            "g_r0_x": np.broadcast_to(g_r0_x, _prrr),
+            "g_r0_y": np.broadcast_to(g_r0_y, _prrr),
+            "h_1_prrr_x": np.broadcast_to(h_1_prrr_x, _prrr),
+            "h_1_prrr_y": np.broadcast_to(h_1_prrr_y, _prrr),
+            "h_2_prrr_x": np.broadcast_to(h_2_prrr_x, _prrr),
+            "h_2_prrr_y": np.broadcast_to(h_2_prrr_y, _prrr),
+            "h_3_prrr_x": np.broadcast_to(h_3_prrr_x, _prrr),
+            "h_3_prrr_y": np.broadcast_to(h_3_prrr_y, _prrr),
+            "inv_Kd_2_prrr_t": np.broadcast_to(inv_Kd_2_prrr_t, _prrr),
+            "inv_prrr_platform_joint_offset_x": np.broadcast_to(inv_prrr_platform_joint_offset_x, _prrr),
+            "inv_uu_3_prrr_t": np.broadcast_to(inv_uu_3_prrr_t, _prrr),
+            "potential_t": np.broadcast_to(potential_t, _prrr),
+            "potential_t_2": np.broadcast_to(potential_t_2, _prrr),
+            "prrr_base_frame_xx": np.broadcast_to(prrr_base_frame_xx, _prrr),
+            "prrr_base_frame_xy": np.broadcast_to(prrr_base_frame_xy, _prrr),
+            "prrr_base_frame_yx": np.broadcast_to(prrr_base_frame_yx, _prrr),
+            "prrr_base_frame_yy": np.broadcast_to(prrr_base_frame_yy, _prrr),
+            "prrr_base_point_x": np.broadcast_to(prrr_base_point_x, _prrr),
+            "prrr_base_point_y": np.broadcast_to(prrr_base_point_y, _prrr),
+            "prrr_joint3_offset_x": np.broadcast_to(prrr_joint3_offset_x, _prrr),
+            "prrr_link1_mass": np.broadcast_to(prrr_link1_mass, _prrr),
+            "prrr_link2_mass": np.broadcast_to(prrr_link2_mass, _prrr),
+            "prrr_link3_mass": np.broadcast_to(prrr_link3_mass, _prrr),
+            "prrr_platform_joint_offset_x": np.broadcast_to(prrr_platform_joint_offset_x, _prrr),
+            "prrr_platform_point_x": np.broadcast_to(prrr_platform_point_x, _prrr),
+            "prrr_platform_point_y": np.broadcast_to(prrr_platform_point_y, _prrr),
+            "rho2_2_prrr_t": np.broadcast_to(rho2_2_prrr_t, _prrr),
+            "size_prrr": np.broadcast_to(size_prrr, _prrr),
         },
         "rrr": {
-            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, (2,)),
-            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, (2,)),
-            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, (2,)),
-            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, (2,)),
-            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, (2,)),
-            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, (2,)),
-            "branch_1_rrr": np.broadcast_to(branch_1_rrr, (2,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (2,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (2,)),
-            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, (2,)),
-            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, (2,)),
-            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, (2,)),
-            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, (2,)),
-            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, (2,)),
-            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, (2,)),
-            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, (2,)),
-            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, (2,)),
-            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, (2,)),
-            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, (2,)),
-            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, (2,)),
-            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, (2,)),
-            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, (2,)),
-            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, (2,)),
-            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, (2,)),
-            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, (2,)),
-            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, (2,)),
-            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, (2,)),
-            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, (2,)),
-            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, (2,)),
-            "size_rrr": np.broadcast_to(size_rrr, (2,)),
+            "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
+            "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
+            "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
+            "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
+            "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
+            "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr),
+            "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
+            "h_1_rrr_y": np.broadcast_to(h_1_rrr_y, _rrr),
+            "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
+            "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
+            "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
+            "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
+            "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
+            "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
+            "rrr_base_frame_xy": np.broadcast_to(rrr_base_frame_xy, _rrr),
+            "rrr_base_frame_yx": np.broadcast_to(rrr_base_frame_yx, _rrr),
+            "rrr_base_frame_yy": np.broadcast_to(rrr_base_frame_yy, _rrr),
+            "rrr_base_point_x": np.broadcast_to(rrr_base_point_x, _rrr),
+            "rrr_base_point_y": np.broadcast_to(rrr_base_point_y, _rrr),
+            "rrr_joint2_offset_x": np.broadcast_to(rrr_joint2_offset_x, _rrr),
+            "rrr_link1_mass": np.broadcast_to(rrr_link1_mass, _rrr),
+            "rrr_link2_mass": np.broadcast_to(rrr_link2_mass, _rrr),
+            "rrr_platform_joint_offset_x": np.broadcast_to(rrr_platform_joint_offset_x, _rrr),
+            "rrr_platform_point_x": np.broadcast_to(rrr_platform_point_x, _rrr),
+            "rrr_platform_point_y": np.broadcast_to(rrr_platform_point_y, _rrr),
+            "size_rrr": np.broadcast_to(size_rrr, _rrr),
         },
     }
     return shared, legs
@@ -803,9 +805,9 @@ def _dynamics_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -1045,11 +1047,11 @@ def _dynamics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1267,9 +1269,9 @@ def _M_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -1420,11 +1422,11 @@ def _M_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1580,9 +1582,9 @@ def _Z_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -1725,11 +1727,11 @@ def _Z_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -1879,9 +1881,9 @@ def _H_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -1945,11 +1947,11 @@ def _H_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2064,9 +2066,9 @@ def _required_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -2227,11 +2229,11 @@ def _required_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2397,9 +2399,9 @@ def _inverse_kinematics_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -2443,11 +2445,11 @@ def _inverse_kinematics_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2518,9 +2520,9 @@ def _joint_rates_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -2593,11 +2595,11 @@ def _joint_rates_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2700,9 +2702,9 @@ def _joint_accelerations_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -2802,11 +2804,11 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -2939,9 +2941,9 @@ def _legs_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -3090,11 +3092,11 @@ def _legs_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -3256,9 +3258,9 @@ def _potential_prrr(c, k, x, s, f):
     # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
     Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
     Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
-    # (prrr-K7) factor of cos in the equation of joint 2
+    # (prrr-K7) factor of the cosine in the equation of joint 2
     Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
-    # (prrr-K8) factor of sin in the equation of joint 2
+    # (prrr-K8) factor of the sine in the equation of joint 2
     Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
     # (prrr-K9) squared amplitude
     rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
@@ -3312,11 +3314,11 @@ def _potential_rrr(c, k, x, s, f):
     Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
     # (rrr-K3) component along the reference direction
     px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
-    # (rrr-K6) factor of cos in the equation of joint 1
+    # (rrr-K6) factor of the cosine in the equation of joint 1
     Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
     # (rrr-K4) component across the reference direction
     py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
-    # (rrr-K7) factor of sin in the equation of joint 1
+    # (rrr-K7) factor of the sine in the equation of joint 1
     Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
     # (rrr-K8) squared amplitude
     rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
@@ -4030,7 +4032,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

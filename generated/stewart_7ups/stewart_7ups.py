@@ -282,6 +282,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _ups = (len(_LEGS["ups"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -444,16 +445,16 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, (7,)))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, (7,)))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, (7,)))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, (7,)))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_11, (7,)))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_12, (7,)))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_13, (7,)))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_14, (7,)))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_15, (7,)))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_16, (7,)))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
+    total_ups_xx = np.sum(np.broadcast_to(J_star_t_11, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(J_star_t_12, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(J_star_t_13, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(J_star_t_14, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(J_star_t_15, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(J_star_t_16, _ups))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups
     # (L2) first moment about the platform origin
@@ -497,48 +498,48 @@ def _prepare(p):
     }
     legs = {
         "ups": {
-            "J_group_2_xx": np.broadcast_to(J_group_2_xx, (7,)),
-            "J_group_2_xy": np.broadcast_to(J_group_2_xy, (7,)),
-            "J_group_2_xz": np.broadcast_to(J_group_2_xz, (7,)),
-            "J_group_2_yy": np.broadcast_to(J_group_2_yy, (7,)),
-            "J_group_2_yz": np.broadcast_to(J_group_2_yz, (7,)),
-            "J_group_2_zz": np.broadcast_to(J_group_2_zz, (7,)),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, (7,)),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, (7,)),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, (7,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (7,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (7,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (7,)),
-            "branch_1": np.broadcast_to(branch_1, (7,)),
-            "branch_2": np.broadcast_to(branch_2, (7,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (7,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (7,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (7,)),
-            "h_2_x": np.broadcast_to(h_2_x, (7,)),
-            "h_2_y": np.broadcast_to(h_2_y, (7,)),
-            "h_2_z": np.broadcast_to(h_2_z, (7,)),
-            "h_3_x": np.broadcast_to(h_3_x, (7,)),
-            "h_3_y": np.broadcast_to(h_3_y, (7,)),
-            "h_3_z": np.broadcast_to(h_3_z, (7,)),
-            "size": np.broadcast_to(size, (7,)),
-            "size_t_6": np.broadcast_to(size_t_6, (7,)),
-            "ups_base_frame_xx": np.broadcast_to(ups_base_frame_xx, (7,)),
-            "ups_base_frame_xy": np.broadcast_to(ups_base_frame_xy, (7,)),
-            "ups_base_frame_xz": np.broadcast_to(ups_base_frame_xz, (7,)),
-            "ups_base_frame_yx": np.broadcast_to(ups_base_frame_yx, (7,)),
-            "ups_base_frame_yy": np.broadcast_to(ups_base_frame_yy, (7,)),
-            "ups_base_frame_yz": np.broadcast_to(ups_base_frame_yz, (7,)),
-            "ups_base_frame_zx": np.broadcast_to(ups_base_frame_zx, (7,)),
-            "ups_base_frame_zy": np.broadcast_to(ups_base_frame_zy, (7,)),
-            "ups_base_frame_zz": np.broadcast_to(ups_base_frame_zz, (7,)),
-            "ups_base_point_x": np.broadcast_to(ups_base_point_x, (7,)),
-            "ups_base_point_y": np.broadcast_to(ups_base_point_y, (7,)),
-            "ups_base_point_z": np.broadcast_to(ups_base_point_z, (7,)),
-            "ups_link2_mass": np.broadcast_to(ups_link2_mass, (7,)),
-            "ups_link3_mass": np.broadcast_to(ups_link3_mass, (7,)),
-            "ups_platform_point_x": np.broadcast_to(ups_platform_point_x, (7,)),
-            "ups_platform_point_y": np.broadcast_to(ups_platform_point_y, (7,)),
-            "ups_platform_point_z": np.broadcast_to(ups_platform_point_z, (7,)),
+            "J_group_2_xx": np.broadcast_to(J_group_2_xx, _ups),
+            "J_group_2_xy": np.broadcast_to(J_group_2_xy, _ups),
+            "J_group_2_xz": np.broadcast_to(J_group_2_xz, _ups),
+            "J_group_2_yy": np.broadcast_to(J_group_2_yy, _ups),
+            "J_group_2_yz": np.broadcast_to(J_group_2_yz, _ups),
+            "J_group_2_zz": np.broadcast_to(J_group_2_zz, _ups),
+            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _ups),
+            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _ups),
+            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _ups),
+            "b_r0_x": np.broadcast_to(b_r0_x, _ups),
+            "b_r0_y": np.broadcast_to(b_r0_y, _ups),
+            "b_r0_z": np.broadcast_to(b_r0_z, _ups),
+            "branch_1": np.broadcast_to(branch_1, _ups),
+            "branch_2": np.broadcast_to(branch_2, _ups),
+            "g_r0_x": np.broadcast_to(g_r0_x, _ups),
+            "g_r0_y": np.broadcast_to(g_r0_y, _ups),
+            "g_r0_z": np.broadcast_to(g_r0_z, _ups),
+            "h_2_x": np.broadcast_to(h_2_x, _ups),
+            "h_2_y": np.broadcast_to(h_2_y, _ups),
+            "h_2_z": np.broadcast_to(h_2_z, _ups),
+            "h_3_x": np.broadcast_to(h_3_x, _ups),
+            "h_3_y": np.broadcast_to(h_3_y, _ups),
+            "h_3_z": np.broadcast_to(h_3_z, _ups),
+            "size": np.broadcast_to(size, _ups),
+            "size_t_6": np.broadcast_to(size_t_6, _ups),
+            "ups_base_frame_xx": np.broadcast_to(ups_base_frame_xx, _ups),
+            "ups_base_frame_xy": np.broadcast_to(ups_base_frame_xy, _ups),
+            "ups_base_frame_xz": np.broadcast_to(ups_base_frame_xz, _ups),
+            "ups_base_frame_yx": np.broadcast_to(ups_base_frame_yx, _ups),
+            "ups_base_frame_yy": np.broadcast_to(ups_base_frame_yy, _ups),
+            "ups_base_frame_yz": np.broadcast_to(ups_base_frame_yz, _ups),
+            "ups_base_frame_zx": np.broadcast_to(ups_base_frame_zx, _ups),
+            "ups_base_frame_zy": np.broadcast_to(ups_base_frame_zy, _ups),
+            "ups_base_frame_zz": np.broadcast_to(ups_base_frame_zz, _ups),
+            "ups_base_point_x": np.broadcast_to(ups_base_point_x, _ups),
+            "ups_base_point_y": np.broadcast_to(ups_base_point_y, _ups),
+            "ups_base_point_z": np.broadcast_to(ups_base_point_z, _ups),
+            "ups_link2_mass": np.broadcast_to(ups_link2_mass, _ups),
+            "ups_link3_mass": np.broadcast_to(ups_link3_mass, _ups),
+            "ups_platform_point_x": np.broadcast_to(ups_platform_point_x, _ups),
+            "ups_platform_point_y": np.broadcast_to(ups_platform_point_y, _ups),
+            "ups_platform_point_z": np.broadcast_to(ups_platform_point_z, _ups),
         },
     }
     return shared, legs
@@ -3255,7 +3256,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

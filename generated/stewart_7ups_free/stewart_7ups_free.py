@@ -321,6 +321,8 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _ups = (len(_LEGS["ups"]),)
+    _ups2 = (len(_LEGS["ups2"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -520,16 +522,16 @@ def _prepare(p):
     ups_base_frame_xz*ups_base_point_x + ups_base_frame_yz*ups_base_point_y +
         ups_base_frame_zz*ups_base_point_z
     )
-    total_ups = np.sum(np.broadcast_to(ups_link3_mass, (6,)))
-    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, (6,)))
-    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, (6,)))
-    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, (6,)))
-    total_ups_xx = np.sum(np.broadcast_to(J_star_t_11, (6,)))
-    total_ups_xy = np.sum(np.broadcast_to(J_star_t_12, (6,)))
-    total_ups_xz = np.sum(np.broadcast_to(J_star_t_13, (6,)))
-    total_ups_yy = np.sum(np.broadcast_to(J_star_t_14, (6,)))
-    total_ups_yz = np.sum(np.broadcast_to(J_star_t_15, (6,)))
-    total_ups_zz = np.sum(np.broadcast_to(J_star_t_16, (6,)))
+    total_ups = np.sum(np.broadcast_to(ups_link3_mass, _ups))
+    total_ups_x = np.sum(np.broadcast_to(h_star_t_4, _ups))
+    total_ups_y = np.sum(np.broadcast_to(h_star_t_5, _ups))
+    total_ups_z = np.sum(np.broadcast_to(h_star_t_6, _ups))
+    total_ups_xx = np.sum(np.broadcast_to(J_star_t_11, _ups))
+    total_ups_xy = np.sum(np.broadcast_to(J_star_t_12, _ups))
+    total_ups_xz = np.sum(np.broadcast_to(J_star_t_13, _ups))
+    total_ups_yy = np.sum(np.broadcast_to(J_star_t_14, _ups))
+    total_ups_yz = np.sum(np.broadcast_to(J_star_t_15, _ups))
+    total_ups_zz = np.sum(np.broadcast_to(J_star_t_16, _ups))
     # (ups2-G1) size of the leg, the measure of what is near singular
     size_ups2_t = (
     ups2_base_point_x*ups2_base_point_x + ups2_base_point_y*ups2_base_point_y +
@@ -629,16 +631,16 @@ def _prepare(p):
     ups2_base_frame_xz*ups2_base_point_x + ups2_base_frame_yz*ups2_base_point_y +
         ups2_base_frame_zz*ups2_base_point_z
     )
-    total_ups2 = np.sum(np.broadcast_to(ups2_link3_mass, (1,)))
-    total_ups2_x = np.sum(np.broadcast_to(h_star_t_7, (1,)))
-    total_ups2_y = np.sum(np.broadcast_to(h_star_t_8, (1,)))
-    total_ups2_z = np.sum(np.broadcast_to(h_star_t_9, (1,)))
-    total_ups2_xx = np.sum(np.broadcast_to(J_star_t_17, (1,)))
-    total_ups2_xy = np.sum(np.broadcast_to(J_star_t_18, (1,)))
-    total_ups2_xz = np.sum(np.broadcast_to(J_star_t_19, (1,)))
-    total_ups2_yy = np.sum(np.broadcast_to(J_star_t_20, (1,)))
-    total_ups2_yz = np.sum(np.broadcast_to(J_star_t_21, (1,)))
-    total_ups2_zz = np.sum(np.broadcast_to(J_star_t_22, (1,)))
+    total_ups2 = np.sum(np.broadcast_to(ups2_link3_mass, _ups2))
+    total_ups2_x = np.sum(np.broadcast_to(h_star_t_7, _ups2))
+    total_ups2_y = np.sum(np.broadcast_to(h_star_t_8, _ups2))
+    total_ups2_z = np.sum(np.broadcast_to(h_star_t_9, _ups2))
+    total_ups2_xx = np.sum(np.broadcast_to(J_star_t_17, _ups2))
+    total_ups2_xy = np.sum(np.broadcast_to(J_star_t_18, _ups2))
+    total_ups2_xz = np.sum(np.broadcast_to(J_star_t_19, _ups2))
+    total_ups2_yy = np.sum(np.broadcast_to(J_star_t_20, _ups2))
+    total_ups2_yz = np.sum(np.broadcast_to(J_star_t_21, _ups2))
+    total_ups2_zz = np.sum(np.broadcast_to(J_star_t_22, _ups2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_ups + total_ups2
     # (L2) first moment about the platform origin
@@ -682,92 +684,92 @@ def _prepare(p):
     }
     legs = {
         "ups": {
-            "J_group_2_ups_xx": np.broadcast_to(J_group_2_ups_xx, (6,)),
-            "J_group_2_ups_xy": np.broadcast_to(J_group_2_ups_xy, (6,)),
-            "J_group_2_ups_xz": np.broadcast_to(J_group_2_ups_xz, (6,)),
-            "J_group_2_ups_yy": np.broadcast_to(J_group_2_ups_yy, (6,)),
-            "J_group_2_ups_yz": np.broadcast_to(J_group_2_ups_yz, (6,)),
-            "J_group_2_ups_zz": np.broadcast_to(J_group_2_ups_zz, (6,)),
-            "Sigma_2_ups_xx": np.broadcast_to(Sigma_2_ups_xx, (6,)),
-            "Sigma_2_ups_yy": np.broadcast_to(Sigma_2_ups_yy, (6,)),
-            "Sigma_2_ups_zz": np.broadcast_to(Sigma_2_ups_zz, (6,)),
-            "b_ups_r0_x": np.broadcast_to(b_ups_r0_x, (6,)),
-            "b_ups_r0_y": np.broadcast_to(b_ups_r0_y, (6,)),
-            "b_ups_r0_z": np.broadcast_to(b_ups_r0_z, (6,)),
-            "branch_1_ups": np.broadcast_to(branch_1_ups, (6,)),
-            "branch_2_ups": np.broadcast_to(branch_2_ups, (6,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (6,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (6,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (6,)),
-            "h_2_ups_x": np.broadcast_to(h_2_ups_x, (6,)),
-            "h_2_ups_y": np.broadcast_to(h_2_ups_y, (6,)),
-            "h_2_ups_z": np.broadcast_to(h_2_ups_z, (6,)),
-            "h_3_ups_x": np.broadcast_to(h_3_ups_x, (6,)),
-            "h_3_ups_y": np.broadcast_to(h_3_ups_y, (6,)),
-            "h_3_ups_z": np.broadcast_to(h_3_ups_z, (6,)),
-            "size_ups": np.broadcast_to(size_ups, (6,)),
-            "size_ups_t_6": np.broadcast_to(size_ups_t_6, (6,)),
-            "ups_base_frame_xx": np.broadcast_to(ups_base_frame_xx, (6,)),
-            "ups_base_frame_xy": np.broadcast_to(ups_base_frame_xy, (6,)),
-            "ups_base_frame_xz": np.broadcast_to(ups_base_frame_xz, (6,)),
-            "ups_base_frame_yx": np.broadcast_to(ups_base_frame_yx, (6,)),
-            "ups_base_frame_yy": np.broadcast_to(ups_base_frame_yy, (6,)),
-            "ups_base_frame_yz": np.broadcast_to(ups_base_frame_yz, (6,)),
-            "ups_base_frame_zx": np.broadcast_to(ups_base_frame_zx, (6,)),
-            "ups_base_frame_zy": np.broadcast_to(ups_base_frame_zy, (6,)),
-            "ups_base_frame_zz": np.broadcast_to(ups_base_frame_zz, (6,)),
-            "ups_base_point_x": np.broadcast_to(ups_base_point_x, (6,)),
-            "ups_base_point_y": np.broadcast_to(ups_base_point_y, (6,)),
-            "ups_base_point_z": np.broadcast_to(ups_base_point_z, (6,)),
-            "ups_link2_mass": np.broadcast_to(ups_link2_mass, (6,)),
-            "ups_link3_mass": np.broadcast_to(ups_link3_mass, (6,)),
-            "ups_platform_point_x": np.broadcast_to(ups_platform_point_x, (6,)),
-            "ups_platform_point_y": np.broadcast_to(ups_platform_point_y, (6,)),
-            "ups_platform_point_z": np.broadcast_to(ups_platform_point_z, (6,)),
+            "J_group_2_ups_xx": np.broadcast_to(J_group_2_ups_xx, _ups),
+            "J_group_2_ups_xy": np.broadcast_to(J_group_2_ups_xy, _ups),
+            "J_group_2_ups_xz": np.broadcast_to(J_group_2_ups_xz, _ups),
+            "J_group_2_ups_yy": np.broadcast_to(J_group_2_ups_yy, _ups),
+            "J_group_2_ups_yz": np.broadcast_to(J_group_2_ups_yz, _ups),
+            "J_group_2_ups_zz": np.broadcast_to(J_group_2_ups_zz, _ups),
+            "Sigma_2_ups_xx": np.broadcast_to(Sigma_2_ups_xx, _ups),
+            "Sigma_2_ups_yy": np.broadcast_to(Sigma_2_ups_yy, _ups),
+            "Sigma_2_ups_zz": np.broadcast_to(Sigma_2_ups_zz, _ups),
+            "b_ups_r0_x": np.broadcast_to(b_ups_r0_x, _ups),
+            "b_ups_r0_y": np.broadcast_to(b_ups_r0_y, _ups),
+            "b_ups_r0_z": np.broadcast_to(b_ups_r0_z, _ups),
+            "branch_1_ups": np.broadcast_to(branch_1_ups, _ups),
+            "branch_2_ups": np.broadcast_to(branch_2_ups, _ups),
+            "g_r0_x": np.broadcast_to(g_r0_x, _ups),
+            "g_r0_y": np.broadcast_to(g_r0_y, _ups),
+            "g_r0_z": np.broadcast_to(g_r0_z, _ups),
+            "h_2_ups_x": np.broadcast_to(h_2_ups_x, _ups),
+            "h_2_ups_y": np.broadcast_to(h_2_ups_y, _ups),
+            "h_2_ups_z": np.broadcast_to(h_2_ups_z, _ups),
+            "h_3_ups_x": np.broadcast_to(h_3_ups_x, _ups),
+            "h_3_ups_y": np.broadcast_to(h_3_ups_y, _ups),
+            "h_3_ups_z": np.broadcast_to(h_3_ups_z, _ups),
+            "size_ups": np.broadcast_to(size_ups, _ups),
+            "size_ups_t_6": np.broadcast_to(size_ups_t_6, _ups),
+            "ups_base_frame_xx": np.broadcast_to(ups_base_frame_xx, _ups),
+            "ups_base_frame_xy": np.broadcast_to(ups_base_frame_xy, _ups),
+            "ups_base_frame_xz": np.broadcast_to(ups_base_frame_xz, _ups),
+            "ups_base_frame_yx": np.broadcast_to(ups_base_frame_yx, _ups),
+            "ups_base_frame_yy": np.broadcast_to(ups_base_frame_yy, _ups),
+            "ups_base_frame_yz": np.broadcast_to(ups_base_frame_yz, _ups),
+            "ups_base_frame_zx": np.broadcast_to(ups_base_frame_zx, _ups),
+            "ups_base_frame_zy": np.broadcast_to(ups_base_frame_zy, _ups),
+            "ups_base_frame_zz": np.broadcast_to(ups_base_frame_zz, _ups),
+            "ups_base_point_x": np.broadcast_to(ups_base_point_x, _ups),
+            "ups_base_point_y": np.broadcast_to(ups_base_point_y, _ups),
+            "ups_base_point_z": np.broadcast_to(ups_base_point_z, _ups),
+            "ups_link2_mass": np.broadcast_to(ups_link2_mass, _ups),
+            "ups_link3_mass": np.broadcast_to(ups_link3_mass, _ups),
+            "ups_platform_point_x": np.broadcast_to(ups_platform_point_x, _ups),
+            "ups_platform_point_y": np.broadcast_to(ups_platform_point_y, _ups),
+            "ups_platform_point_z": np.broadcast_to(ups_platform_point_z, _ups),
         },
         "ups2": {
-            "J_group_2_ups2_xx": np.broadcast_to(J_group_2_ups2_xx, (1,)),
-            "J_group_2_ups2_xy": np.broadcast_to(J_group_2_ups2_xy, (1,)),
-            "J_group_2_ups2_xz": np.broadcast_to(J_group_2_ups2_xz, (1,)),
-            "J_group_2_ups2_yy": np.broadcast_to(J_group_2_ups2_yy, (1,)),
-            "J_group_2_ups2_yz": np.broadcast_to(J_group_2_ups2_yz, (1,)),
-            "J_group_2_ups2_zz": np.broadcast_to(J_group_2_ups2_zz, (1,)),
-            "Sigma_2_ups2_xx": np.broadcast_to(Sigma_2_ups2_xx, (1,)),
-            "Sigma_2_ups2_yy": np.broadcast_to(Sigma_2_ups2_yy, (1,)),
-            "Sigma_2_ups2_zz": np.broadcast_to(Sigma_2_ups2_zz, (1,)),
-            "b_ups2_r0_x": np.broadcast_to(b_ups2_r0_x, (1,)),
-            "b_ups2_r0_y": np.broadcast_to(b_ups2_r0_y, (1,)),
-            "b_ups2_r0_z": np.broadcast_to(b_ups2_r0_z, (1,)),
-            "branch_1_ups2": np.broadcast_to(branch_1_ups2, (1,)),
-            "branch_2_ups2": np.broadcast_to(branch_2_ups2, (1,)),
-            "g_r0_x_2": np.broadcast_to(g_r0_x_2, (1,)),
-            "g_r0_y_2": np.broadcast_to(g_r0_y_2, (1,)),
-            "g_r0_z_2": np.broadcast_to(g_r0_z_2, (1,)),
-            "h_2_ups2_x": np.broadcast_to(h_2_ups2_x, (1,)),
-            "h_2_ups2_y": np.broadcast_to(h_2_ups2_y, (1,)),
-            "h_2_ups2_z": np.broadcast_to(h_2_ups2_z, (1,)),
-            "h_3_ups2_x": np.broadcast_to(h_3_ups2_x, (1,)),
-            "h_3_ups2_y": np.broadcast_to(h_3_ups2_y, (1,)),
-            "h_3_ups2_z": np.broadcast_to(h_3_ups2_z, (1,)),
-            "size_ups2": np.broadcast_to(size_ups2, (1,)),
-            "size_ups2_t_6": np.broadcast_to(size_ups2_t_6, (1,)),
-            "ups2_base_frame_xx": np.broadcast_to(ups2_base_frame_xx, (1,)),
-            "ups2_base_frame_xy": np.broadcast_to(ups2_base_frame_xy, (1,)),
-            "ups2_base_frame_xz": np.broadcast_to(ups2_base_frame_xz, (1,)),
-            "ups2_base_frame_yx": np.broadcast_to(ups2_base_frame_yx, (1,)),
-            "ups2_base_frame_yy": np.broadcast_to(ups2_base_frame_yy, (1,)),
-            "ups2_base_frame_yz": np.broadcast_to(ups2_base_frame_yz, (1,)),
-            "ups2_base_frame_zx": np.broadcast_to(ups2_base_frame_zx, (1,)),
-            "ups2_base_frame_zy": np.broadcast_to(ups2_base_frame_zy, (1,)),
-            "ups2_base_frame_zz": np.broadcast_to(ups2_base_frame_zz, (1,)),
-            "ups2_base_point_x": np.broadcast_to(ups2_base_point_x, (1,)),
-            "ups2_base_point_y": np.broadcast_to(ups2_base_point_y, (1,)),
-            "ups2_base_point_z": np.broadcast_to(ups2_base_point_z, (1,)),
-            "ups2_link2_mass": np.broadcast_to(ups2_link2_mass, (1,)),
-            "ups2_link3_mass": np.broadcast_to(ups2_link3_mass, (1,)),
-            "ups2_platform_point_x": np.broadcast_to(ups2_platform_point_x, (1,)),
-            "ups2_platform_point_y": np.broadcast_to(ups2_platform_point_y, (1,)),
-            "ups2_platform_point_z": np.broadcast_to(ups2_platform_point_z, (1,)),
+            "J_group_2_ups2_xx": np.broadcast_to(J_group_2_ups2_xx, _ups2),
+            "J_group_2_ups2_xy": np.broadcast_to(J_group_2_ups2_xy, _ups2),
+            "J_group_2_ups2_xz": np.broadcast_to(J_group_2_ups2_xz, _ups2),
+            "J_group_2_ups2_yy": np.broadcast_to(J_group_2_ups2_yy, _ups2),
+            "J_group_2_ups2_yz": np.broadcast_to(J_group_2_ups2_yz, _ups2),
+            "J_group_2_ups2_zz": np.broadcast_to(J_group_2_ups2_zz, _ups2),
+            "Sigma_2_ups2_xx": np.broadcast_to(Sigma_2_ups2_xx, _ups2),
+            "Sigma_2_ups2_yy": np.broadcast_to(Sigma_2_ups2_yy, _ups2),
+            "Sigma_2_ups2_zz": np.broadcast_to(Sigma_2_ups2_zz, _ups2),
+            "b_ups2_r0_x": np.broadcast_to(b_ups2_r0_x, _ups2),
+            "b_ups2_r0_y": np.broadcast_to(b_ups2_r0_y, _ups2),
+            "b_ups2_r0_z": np.broadcast_to(b_ups2_r0_z, _ups2),
+            "branch_1_ups2": np.broadcast_to(branch_1_ups2, _ups2),
+            "branch_2_ups2": np.broadcast_to(branch_2_ups2, _ups2),
+            "g_r0_x_2": np.broadcast_to(g_r0_x_2, _ups2),
+            "g_r0_y_2": np.broadcast_to(g_r0_y_2, _ups2),
+            "g_r0_z_2": np.broadcast_to(g_r0_z_2, _ups2),
+            "h_2_ups2_x": np.broadcast_to(h_2_ups2_x, _ups2),
+            "h_2_ups2_y": np.broadcast_to(h_2_ups2_y, _ups2),
+            "h_2_ups2_z": np.broadcast_to(h_2_ups2_z, _ups2),
+            "h_3_ups2_x": np.broadcast_to(h_3_ups2_x, _ups2),
+            "h_3_ups2_y": np.broadcast_to(h_3_ups2_y, _ups2),
+            "h_3_ups2_z": np.broadcast_to(h_3_ups2_z, _ups2),
+            "size_ups2": np.broadcast_to(size_ups2, _ups2),
+            "size_ups2_t_6": np.broadcast_to(size_ups2_t_6, _ups2),
+            "ups2_base_frame_xx": np.broadcast_to(ups2_base_frame_xx, _ups2),
+            "ups2_base_frame_xy": np.broadcast_to(ups2_base_frame_xy, _ups2),
+            "ups2_base_frame_xz": np.broadcast_to(ups2_base_frame_xz, _ups2),
+            "ups2_base_frame_yx": np.broadcast_to(ups2_base_frame_yx, _ups2),
+            "ups2_base_frame_yy": np.broadcast_to(ups2_base_frame_yy, _ups2),
+            "ups2_base_frame_yz": np.broadcast_to(ups2_base_frame_yz, _ups2),
+            "ups2_base_frame_zx": np.broadcast_to(ups2_base_frame_zx, _ups2),
+            "ups2_base_frame_zy": np.broadcast_to(ups2_base_frame_zy, _ups2),
+            "ups2_base_frame_zz": np.broadcast_to(ups2_base_frame_zz, _ups2),
+            "ups2_base_point_x": np.broadcast_to(ups2_base_point_x, _ups2),
+            "ups2_base_point_y": np.broadcast_to(ups2_base_point_y, _ups2),
+            "ups2_base_point_z": np.broadcast_to(ups2_base_point_z, _ups2),
+            "ups2_link2_mass": np.broadcast_to(ups2_link2_mass, _ups2),
+            "ups2_link3_mass": np.broadcast_to(ups2_link3_mass, _ups2),
+            "ups2_platform_point_x": np.broadcast_to(ups2_platform_point_x, _ups2),
+            "ups2_platform_point_y": np.broadcast_to(ups2_platform_point_y, _ups2),
+            "ups2_platform_point_z": np.broadcast_to(ups2_platform_point_z, _ups2),
         },
     }
     return shared, legs
@@ -5139,7 +5141,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -831,31 +831,31 @@ INLINE void dynamics_legs_urps(const prepared *m, size_t leg, size_t legs, const
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*c_3_t;
@@ -870,10 +870,10 @@ INLINE void dynamics_legs_urps(const prepared *m, size_t leg, size_t legs, const
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = s_2*s_3;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -1548,31 +1548,31 @@ INLINE void M_legs_urps(const prepared *m, size_t leg, size_t legs, const M_valu
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*c_3_t;
@@ -1587,10 +1587,10 @@ INLINE void M_legs_urps(const prepared *m, size_t leg, size_t legs, const M_valu
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = s_2*s_3;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -2155,31 +2155,31 @@ INLINE void Z_legs_urps(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*c_3_t;
@@ -2194,10 +2194,10 @@ INLINE void Z_legs_urps(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = s_2*s_3;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -2534,22 +2534,22 @@ INLINE void H_legs_urps(const prepared *m, size_t leg, size_t legs, const H_valu
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_z_x = S_x*inv_root_2;
@@ -2862,31 +2862,31 @@ INLINE void required_legs_urps(const prepared *m, size_t leg, size_t legs, const
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*c_3_t;
@@ -2901,10 +2901,10 @@ INLINE void required_legs_urps(const prepared *m, size_t leg, size_t legs, const
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = s_2*s_3;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -3248,30 +3248,30 @@ INLINE void inverse_kinematics_legs_urps(const prepared *m, size_t leg, size_t l
             R_yz*urps_platform_point_z - urps_base_point_y;
         const real S_z = t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
             R_zz*urps_platform_point_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
-        /* (urps-K8) displacement of joint 1 */
+        /* (urps-K10) displacement of joint 1 */
         const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        /* (urps-K17) displacement of joint 2 */
+        /* (urps-K19) displacement of joint 2 */
         const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
         o->entry[0][k] = q_1;
         o->entry[1][k] = q_2;
@@ -3463,29 +3463,29 @@ INLINE void joint_rates_legs_urps(const prepared *m, size_t leg, size_t legs, co
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*s_3;
@@ -3499,10 +3499,10 @@ INLINE void joint_rates_legs_urps(const prepared *m, size_t leg, size_t legs, co
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = inv_root_2*s_3*xi_1_t;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -3751,31 +3751,31 @@ INLINE void joint_accelerations_legs_urps(const prepared *m, size_t leg, size_t 
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*s_3;
@@ -3789,10 +3789,10 @@ INLINE void joint_accelerations_legs_urps(const prepared *m, size_t leg, size_t 
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = s_2*s_3;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -4100,31 +4100,31 @@ INLINE void legs_legs_urps(const prepared *m, size_t leg, size_t legs, const leg
         const real S_x = q_in_base_x + t_x - urps_base_point_x;
         const real S_y = q_in_base_y + t_y - urps_base_point_y;
         const real S_z = q_in_base_z + t_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
         /* (urps-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_2*c_3_t;
@@ -4139,10 +4139,10 @@ INLINE void legs_legs_urps(const prepared *m, size_t leg, size_t legs, const leg
         const real axis_z_y = S_y*inv_root_2;
         const real axis_z_z = S_z*inv_root_2;
         const real w_1_t = s_2*s_3;
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (urps-V6) reciprocal vector 1 */
         const real axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t;
@@ -4456,36 +4456,36 @@ INLINE void potential_legs_urps(const prepared *m, size_t leg, size_t legs, cons
             R_yz*urps_platform_point_z - urps_base_point_y;
         const real S_z = t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y +
             R_zz*urps_platform_point_z - urps_base_point_z;
-        /* (urps-K2) component along the reference direction */
+        /* (urps-K4) component along the reference direction */
         const real px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx +
             S_z*urps_base_frame_zx;
-        /* (urps-K3) component across the reference direction */
+        /* (urps-K5) component across the reference direction */
         const real py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy +
             S_z*urps_base_frame_zy;
-        /* (urps-K4) squared amplitude */
+        /* (urps-K6) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (urps-K5) amplitude, with the sign of the branch */
+        /* (urps-K7) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (urps-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        /* (urps-K11) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz +
             S_z*urps_base_frame_zz;
-        /* (urps-K13) squared amplitude */
+        /* (urps-K15) squared amplitude */
         const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (urps-K14) amplitude, with the sign of the branch */
+        /* (urps-K16) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (urps-K15) cosine of the angle of joint 2 from its reference direction */
+        /* (urps-K17) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         const real c_2 = inv_root_2*root_1;
-        /* (urps-K16) sine of the angle of joint 2 from its reference direction */
+        /* (urps-K18) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_root_2*xi_1_t;
-        /* (urps-K19) cosine of the angle of joint 3 from its reference direction */
+        /* (urps-K2) cosine of the angle of joint 3 from its reference direction */
         const real c_3_t = sine(y_3_extra);
-        /* (urps-K20) sine of the angle of joint 3 from its reference direction */
+        /* (urps-K3) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(y_3_extra);
-        /* (urps-K6) cosine of the angle of joint 1 from its reference direction */
+        /* (urps-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*py_1;
-        /* (urps-K7) sine of the angle of joint 1 from its reference direction */
+        /* (urps-K9) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
         /* (V1) potential energy */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;

@@ -274,6 +274,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _urps = (len(_LEGS["urps"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -434,16 +435,16 @@ def _prepare(p):
     urps_base_frame_xz*urps_base_point_x + urps_base_frame_yz*urps_base_point_y +
         urps_base_frame_zz*urps_base_point_z
     )
-    total_urps = np.sum(np.broadcast_to(urps_link4_mass, (6,)))
-    total_urps_x = np.sum(np.broadcast_to(h_star_t_4, (6,)))
-    total_urps_y = np.sum(np.broadcast_to(h_star_t_5, (6,)))
-    total_urps_z = np.sum(np.broadcast_to(h_star_t_6, (6,)))
-    total_urps_xx = np.sum(np.broadcast_to(J_star_t_11, (6,)))
-    total_urps_xy = np.sum(np.broadcast_to(J_star_t_12, (6,)))
-    total_urps_xz = np.sum(np.broadcast_to(J_star_t_13, (6,)))
-    total_urps_yy = np.sum(np.broadcast_to(J_star_t_14, (6,)))
-    total_urps_yz = np.sum(np.broadcast_to(J_star_t_15, (6,)))
-    total_urps_zz = np.sum(np.broadcast_to(J_star_t_16, (6,)))
+    total_urps = np.sum(np.broadcast_to(urps_link4_mass, _urps))
+    total_urps_x = np.sum(np.broadcast_to(h_star_t_4, _urps))
+    total_urps_y = np.sum(np.broadcast_to(h_star_t_5, _urps))
+    total_urps_z = np.sum(np.broadcast_to(h_star_t_6, _urps))
+    total_urps_xx = np.sum(np.broadcast_to(J_star_t_11, _urps))
+    total_urps_xy = np.sum(np.broadcast_to(J_star_t_12, _urps))
+    total_urps_xz = np.sum(np.broadcast_to(J_star_t_13, _urps))
+    total_urps_yy = np.sum(np.broadcast_to(J_star_t_14, _urps))
+    total_urps_yz = np.sum(np.broadcast_to(J_star_t_15, _urps))
+    total_urps_zz = np.sum(np.broadcast_to(J_star_t_16, _urps))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_urps
     # (L2) first moment about the platform origin
@@ -487,47 +488,47 @@ def _prepare(p):
     }
     legs = {
         "urps": {
-            "J_group_3_xx": np.broadcast_to(J_group_3_xx, (6,)),
-            "J_group_3_xy": np.broadcast_to(J_group_3_xy, (6,)),
-            "J_group_3_xz": np.broadcast_to(J_group_3_xz, (6,)),
-            "J_group_3_yy": np.broadcast_to(J_group_3_yy, (6,)),
-            "J_group_3_yz": np.broadcast_to(J_group_3_yz, (6,)),
-            "J_group_3_zz": np.broadcast_to(J_group_3_zz, (6,)),
-            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, (6,)),
-            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, (6,)),
-            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, (6,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (6,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (6,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (6,)),
-            "branch_1": np.broadcast_to(branch_1, (6,)),
-            "branch_2": np.broadcast_to(branch_2, (6,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (6,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (6,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (6,)),
-            "h_3_x": np.broadcast_to(h_3_x, (6,)),
-            "h_3_y": np.broadcast_to(h_3_y, (6,)),
-            "h_3_z": np.broadcast_to(h_3_z, (6,)),
-            "h_4_x": np.broadcast_to(h_4_x, (6,)),
-            "h_4_y": np.broadcast_to(h_4_y, (6,)),
-            "h_4_z": np.broadcast_to(h_4_z, (6,)),
-            "size_t_6": np.broadcast_to(size_t_6, (6,)),
-            "urps_base_frame_xx": np.broadcast_to(urps_base_frame_xx, (6,)),
-            "urps_base_frame_xy": np.broadcast_to(urps_base_frame_xy, (6,)),
-            "urps_base_frame_xz": np.broadcast_to(urps_base_frame_xz, (6,)),
-            "urps_base_frame_yx": np.broadcast_to(urps_base_frame_yx, (6,)),
-            "urps_base_frame_yy": np.broadcast_to(urps_base_frame_yy, (6,)),
-            "urps_base_frame_yz": np.broadcast_to(urps_base_frame_yz, (6,)),
-            "urps_base_frame_zx": np.broadcast_to(urps_base_frame_zx, (6,)),
-            "urps_base_frame_zy": np.broadcast_to(urps_base_frame_zy, (6,)),
-            "urps_base_frame_zz": np.broadcast_to(urps_base_frame_zz, (6,)),
-            "urps_base_point_x": np.broadcast_to(urps_base_point_x, (6,)),
-            "urps_base_point_y": np.broadcast_to(urps_base_point_y, (6,)),
-            "urps_base_point_z": np.broadcast_to(urps_base_point_z, (6,)),
-            "urps_link3_mass": np.broadcast_to(urps_link3_mass, (6,)),
-            "urps_link4_mass": np.broadcast_to(urps_link4_mass, (6,)),
-            "urps_platform_point_x": np.broadcast_to(urps_platform_point_x, (6,)),
-            "urps_platform_point_y": np.broadcast_to(urps_platform_point_y, (6,)),
-            "urps_platform_point_z": np.broadcast_to(urps_platform_point_z, (6,)),
+            "J_group_3_xx": np.broadcast_to(J_group_3_xx, _urps),
+            "J_group_3_xy": np.broadcast_to(J_group_3_xy, _urps),
+            "J_group_3_xz": np.broadcast_to(J_group_3_xz, _urps),
+            "J_group_3_yy": np.broadcast_to(J_group_3_yy, _urps),
+            "J_group_3_yz": np.broadcast_to(J_group_3_yz, _urps),
+            "J_group_3_zz": np.broadcast_to(J_group_3_zz, _urps),
+            "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _urps),
+            "Sigma_3_yy": np.broadcast_to(Sigma_3_yy, _urps),
+            "Sigma_3_zz": np.broadcast_to(Sigma_3_zz, _urps),
+            "b_r0_x": np.broadcast_to(b_r0_x, _urps),
+            "b_r0_y": np.broadcast_to(b_r0_y, _urps),
+            "b_r0_z": np.broadcast_to(b_r0_z, _urps),
+            "branch_1": np.broadcast_to(branch_1, _urps),
+            "branch_2": np.broadcast_to(branch_2, _urps),
+            "g_r0_x": np.broadcast_to(g_r0_x, _urps),
+            "g_r0_y": np.broadcast_to(g_r0_y, _urps),
+            "g_r0_z": np.broadcast_to(g_r0_z, _urps),
+            "h_3_x": np.broadcast_to(h_3_x, _urps),
+            "h_3_y": np.broadcast_to(h_3_y, _urps),
+            "h_3_z": np.broadcast_to(h_3_z, _urps),
+            "h_4_x": np.broadcast_to(h_4_x, _urps),
+            "h_4_y": np.broadcast_to(h_4_y, _urps),
+            "h_4_z": np.broadcast_to(h_4_z, _urps),
+            "size_t_6": np.broadcast_to(size_t_6, _urps),
+            "urps_base_frame_xx": np.broadcast_to(urps_base_frame_xx, _urps),
+            "urps_base_frame_xy": np.broadcast_to(urps_base_frame_xy, _urps),
+            "urps_base_frame_xz": np.broadcast_to(urps_base_frame_xz, _urps),
+            "urps_base_frame_yx": np.broadcast_to(urps_base_frame_yx, _urps),
+            "urps_base_frame_yy": np.broadcast_to(urps_base_frame_yy, _urps),
+            "urps_base_frame_yz": np.broadcast_to(urps_base_frame_yz, _urps),
+            "urps_base_frame_zx": np.broadcast_to(urps_base_frame_zx, _urps),
+            "urps_base_frame_zy": np.broadcast_to(urps_base_frame_zy, _urps),
+            "urps_base_frame_zz": np.broadcast_to(urps_base_frame_zz, _urps),
+            "urps_base_point_x": np.broadcast_to(urps_base_point_x, _urps),
+            "urps_base_point_y": np.broadcast_to(urps_base_point_y, _urps),
+            "urps_base_point_z": np.broadcast_to(urps_base_point_z, _urps),
+            "urps_link3_mass": np.broadcast_to(urps_link3_mass, _urps),
+            "urps_link4_mass": np.broadcast_to(urps_link4_mass, _urps),
+            "urps_platform_point_x": np.broadcast_to(urps_platform_point_x, _urps),
+            "urps_platform_point_y": np.broadcast_to(urps_platform_point_y, _urps),
+            "urps_platform_point_z": np.broadcast_to(urps_platform_point_z, _urps),
         },
     }
     return shared, legs
@@ -825,28 +826,28 @@ def _dynamics_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*c_3_t
@@ -861,10 +862,10 @@ def _dynamics_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = s_2*s_3
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -1305,28 +1306,28 @@ def _M_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*c_3_t
@@ -1341,10 +1342,10 @@ def _M_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = s_2*s_3
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -1671,28 +1672,28 @@ def _Z_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*c_3_t
@@ -1707,10 +1708,10 @@ def _Z_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = s_2*s_3
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -1948,19 +1949,19 @@ def _H_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     # (urps-V6) reciprocal vector 1
     axis_z_x = S_x*inv_root_2
@@ -2138,28 +2139,28 @@ def _required_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*c_3_t
@@ -2174,10 +2175,10 @@ def _required_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = s_2*s_3
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -2424,27 +2425,27 @@ def _inverse_kinematics_urps(c, k, x, s, f):
     t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z -
         urps_base_point_z
     )
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
-    # (urps-K8) displacement of joint 1
+    # (urps-K10) displacement of joint 1
     q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-    # (urps-K17) displacement of joint 2
+    # (urps-K19) displacement of joint 2
     q_2 = atan2(-inv_root_2*xi_1_t, inv_root_2*root_1)
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6)
     return (ok, (), (q_1, q_2, y_3_extra, root_2,),)
@@ -2534,26 +2535,26 @@ def _joint_rates_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*s_3
@@ -2567,10 +2568,10 @@ def _joint_rates_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = inv_root_2*s_3*xi_1_t
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -2710,28 +2711,28 @@ def _joint_accelerations_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*s_3
@@ -2745,10 +2746,10 @@ def _joint_accelerations_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = s_2*s_3
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -2942,28 +2943,28 @@ def _legs_urps(c, k, x, s, f):
     S_x = q_in_base_x + t_x - urps_base_point_x
     S_y = q_in_base_y + t_y - urps_base_point_y
     S_z = q_in_base_z + t_z - urps_base_point_z
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
     # (urps-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_2*c_3_t
@@ -2978,10 +2979,10 @@ def _legs_urps(c, k, x, s, f):
     axis_z_y = S_y*inv_root_2
     axis_z_z = S_z*inv_root_2
     w_1_t = s_2*s_3
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (urps-V6) reciprocal vector 1
     axis_y_urps_axes3_r4_x = c_1*c_3_t - s_1*w_1_t
@@ -3224,33 +3225,33 @@ def _potential_urps(c, k, x, s, f):
     t_z + R_zx*urps_platform_point_x + R_zy*urps_platform_point_y + R_zz*urps_platform_point_z -
         urps_base_point_z
     )
-    # (urps-K2) component along the reference direction
+    # (urps-K4) component along the reference direction
     px_1 = S_x*urps_base_frame_xx + S_y*urps_base_frame_yx + S_z*urps_base_frame_zx
-    # (urps-K3) component across the reference direction
+    # (urps-K5) component across the reference direction
     py_1 = S_x*urps_base_frame_xy + S_y*urps_base_frame_yy + S_z*urps_base_frame_zy
-    # (urps-K4) squared amplitude
+    # (urps-K6) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
-    # (urps-K5) amplitude, with the sign of the branch
+    # (urps-K7) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (urps-K9) the vector from joint 1 to the connection point, resolved along link 1
+    # (urps-K11) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*urps_base_frame_xz + S_y*urps_base_frame_yz + S_z*urps_base_frame_zz
-    # (urps-K13) squared amplitude
+    # (urps-K15) squared amplitude
     rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (urps-K14) amplitude, with the sign of the branch
+    # (urps-K16) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (urps-K15) cosine of the angle of joint 2 from its reference direction
+    # (urps-K17) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     c_2 = inv_root_2*root_1
-    # (urps-K16) sine of the angle of joint 2 from its reference direction
+    # (urps-K18) sine of the angle of joint 2 from its reference direction
     s_2 = inv_root_2*xi_1_t
-    # (urps-K19) cosine of the angle of joint 3 from its reference direction
+    # (urps-K2) cosine of the angle of joint 3 from its reference direction
     c_3_t = sin(y_3_extra)
-    # (urps-K20) sine of the angle of joint 3 from its reference direction
+    # (urps-K3) sine of the angle of joint 3 from its reference direction
     s_3 = cos(y_3_extra)
-    # (urps-K6) cosine of the angle of joint 1 from its reference direction
+    # (urps-K8) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*py_1
-    # (urps-K7) sine of the angle of joint 1 from its reference direction
+    # (urps-K9) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
     # (V1) potential energy
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
@@ -3806,7 +3807,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     inertia, bias = dynamics(X, V, p)[:2]
     free, other = list(_FREE_ROWS), [k for k in range(NV) if k not in _FREE_ROWS]

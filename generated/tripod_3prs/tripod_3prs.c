@@ -387,7 +387,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         const real prs_link2_inertia_zz = params->prs_link2_inertia[leg][2][2];
         static const signed char signs_branch_1[] = {-1, -1, -1};
         const real branch_1 = signs_branch_1[leg];
-        /* (prs-K6) constant of the link */
+        /* (prs-K6) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
         /* (prs-G1) size of the leg, the measure of what is near singular */
         const real size_t_ = prs_base_point_x*prs_base_point_x + prs_base_point_y*prs_base_point_y

@@ -257,6 +257,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _prs = (len(_LEGS["prs"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -325,7 +326,7 @@ def _prepare(p):
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
     Z_p_t_3 = gravity_z*platform_mass
-    # (prs-K6) constant of the link
+    # (prs-K6) squared length, across the axis, of the direction fixed in link 2
     uu_2_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x
     # (prs-G1) size of the leg, the measure of what is near singular
     size_t = (
@@ -402,39 +403,39 @@ def _prepare(p):
     }
     legs = {
         "prs": {
-            "J_2_zz": np.broadcast_to(J_2_zz, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "potential_t": np.broadcast_to(potential_t, (3,)),
-            "potential_t_2": np.broadcast_to(potential_t_2, (3,)),
-            "potential_t_3": np.broadcast_to(potential_t_3, (3,)),
-            "prs_base_frame_xx": np.broadcast_to(prs_base_frame_xx, (3,)),
-            "prs_base_frame_xy": np.broadcast_to(prs_base_frame_xy, (3,)),
-            "prs_base_frame_xz": np.broadcast_to(prs_base_frame_xz, (3,)),
-            "prs_base_frame_yx": np.broadcast_to(prs_base_frame_yx, (3,)),
-            "prs_base_frame_yy": np.broadcast_to(prs_base_frame_yy, (3,)),
-            "prs_base_frame_yz": np.broadcast_to(prs_base_frame_yz, (3,)),
-            "prs_base_frame_zx": np.broadcast_to(prs_base_frame_zx, (3,)),
-            "prs_base_frame_zy": np.broadcast_to(prs_base_frame_zy, (3,)),
-            "prs_base_frame_zz": np.broadcast_to(prs_base_frame_zz, (3,)),
-            "prs_base_point_x": np.broadcast_to(prs_base_point_x, (3,)),
-            "prs_base_point_y": np.broadcast_to(prs_base_point_y, (3,)),
-            "prs_base_point_z": np.broadcast_to(prs_base_point_z, (3,)),
-            "prs_link1_mass": np.broadcast_to(prs_link1_mass, (3,)),
-            "prs_link2_mass": np.broadcast_to(prs_link2_mass, (3,)),
-            "prs_platform_joint_offset_x": np.broadcast_to(prs_platform_joint_offset_x, (3,)),
-            "prs_platform_point_x": np.broadcast_to(prs_platform_point_x, (3,)),
-            "prs_platform_point_y": np.broadcast_to(prs_platform_point_y, (3,)),
-            "prs_platform_point_z": np.broadcast_to(prs_platform_point_z, (3,)),
-            "root_2_t": np.broadcast_to(root_2_t, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "uu_2_t": np.broadcast_to(uu_2_t, (3,)),
+            "J_2_zz": np.broadcast_to(J_2_zz, _prs),
+            "b_r0_x": np.broadcast_to(b_r0_x, _prs),
+            "branch_1": np.broadcast_to(branch_1, _prs),
+            "g_r0_x": np.broadcast_to(g_r0_x, _prs),
+            "g_r0_y": np.broadcast_to(g_r0_y, _prs),
+            "h_1_x": np.broadcast_to(h_1_x, _prs),
+            "h_1_y": np.broadcast_to(h_1_y, _prs),
+            "h_2_x": np.broadcast_to(h_2_x, _prs),
+            "h_2_y": np.broadcast_to(h_2_y, _prs),
+            "potential_t": np.broadcast_to(potential_t, _prs),
+            "potential_t_2": np.broadcast_to(potential_t_2, _prs),
+            "potential_t_3": np.broadcast_to(potential_t_3, _prs),
+            "prs_base_frame_xx": np.broadcast_to(prs_base_frame_xx, _prs),
+            "prs_base_frame_xy": np.broadcast_to(prs_base_frame_xy, _prs),
+            "prs_base_frame_xz": np.broadcast_to(prs_base_frame_xz, _prs),
+            "prs_base_frame_yx": np.broadcast_to(prs_base_frame_yx, _prs),
+            "prs_base_frame_yy": np.broadcast_to(prs_base_frame_yy, _prs),
+            "prs_base_frame_yz": np.broadcast_to(prs_base_frame_yz, _prs),
+            "prs_base_frame_zx": np.broadcast_to(prs_base_frame_zx, _prs),
+            "prs_base_frame_zy": np.broadcast_to(prs_base_frame_zy, _prs),
+            "prs_base_frame_zz": np.broadcast_to(prs_base_frame_zz, _prs),
+            "prs_base_point_x": np.broadcast_to(prs_base_point_x, _prs),
+            "prs_base_point_y": np.broadcast_to(prs_base_point_y, _prs),
+            "prs_base_point_z": np.broadcast_to(prs_base_point_z, _prs),
+            "prs_link1_mass": np.broadcast_to(prs_link1_mass, _prs),
+            "prs_link2_mass": np.broadcast_to(prs_link2_mass, _prs),
+            "prs_platform_joint_offset_x": np.broadcast_to(prs_platform_joint_offset_x, _prs),
+            "prs_platform_point_x": np.broadcast_to(prs_platform_point_x, _prs),
+            "prs_platform_point_y": np.broadcast_to(prs_platform_point_y, _prs),
+            "prs_platform_point_z": np.broadcast_to(prs_platform_point_z, _prs),
+            "root_2_t": np.broadcast_to(root_2_t, _prs),
+            "size": np.broadcast_to(size, _prs),
+            "uu_2_t": np.broadcast_to(uu_2_t, _prs),
         },
     }
     return shared, legs
@@ -3241,7 +3242,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

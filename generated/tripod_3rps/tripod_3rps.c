@@ -479,7 +479,7 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 561 mul, 480 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 570 mul, 489 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -737,15 +737,18 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
         const real Q_t = inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass +
             h_2_x*inv_root_1)) - rps_link2_mass;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - axis_x_x*d_phi_2_t;
-        const real Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - axis_x_y*d_phi_2_t;
-        const real Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - axis_x_z*d_phi_2_t;
+        const real Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x -
+            axis_x_rps_axes1_in_base_x*d_phi_2_t;
+        const real Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y -
+            axis_x_rps_axes1_in_base_y*d_phi_2_t;
+        const real Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z -
+            axis_x_rps_axes1_in_base_z*d_phi_2_t;
         const real Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5;
         const real Q_t_16 = 2*Q_t_15 + rps_link2_mass;
         const real Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x -
@@ -785,7 +788,8 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_rps_axes1_in_base_x +
+            S_dot_y*axis_x_rps_axes1_in_base_y + S_dot_z*axis_x_rps_axes1_in_base_z;
         /* (rps-V6) rate of joint 1 */
         const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x +
             S_dot_y*axis_y_rps_axes1_in_base_y + S_dot_z*axis_y_rps_axes1_in_base_z);
@@ -808,7 +812,8 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
            less gravity */
         const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
         const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        const real acc_2_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r1_x;
+        const real acc_2_o_x = axis_x_rps_axes1_in_base_x*u_1_x + axis_x_rps_axes1_in_base_y*u_1_y
+            + axis_x_rps_axes1_in_base_z*u_1_z - g_r1_x;
         const real acc_2_o_y = u_1_tip_y - g_r1_y;
         /* (rps-N11) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_o_x = acc_2_o_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1_o;
@@ -821,17 +826,23 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
            the leg's inertia and weight along all freedoms */
         const real G_o_t = f_2_o_y + inv_root_1*mu_1_o_z;
         /* (rps-N34) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_x*f_2_o_x;
-        const real U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_y*f_2_o_x;
-        const real U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_z*f_2_o_x;
+        const real U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x +
+            axis_x_rps_axes1_in_base_x*f_2_o_x;
+        const real U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y +
+            axis_x_rps_axes1_in_base_y*f_2_o_x;
+        const real U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z +
+            axis_x_rps_axes1_in_base_z*f_2_o_x;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_2_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_2_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
+        const real H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y -
+            axis_x_rps_axes1_in_base_y*q_in_base_z;
+        const real H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z -
+            axis_x_rps_axes1_in_base_z*q_in_base_x;
+        const real H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x -
+            axis_x_rps_axes1_in_base_x*q_in_base_y;
         /* (M9) moment of the column's unit force about the platform origin */
         const real Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz;
         const real Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz;
@@ -863,9 +874,9 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         o->sum[24][k] = Z_a_t;  /* total_rps_x_2 */
         o->sum[25][k] = Z_a_t_2;  /* total_rps_y_2 */
         o->sum[26][k] = Z_a_t_3;  /* total_rps_z_2 */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
+        o->entry[0][k] = axis_x_rps_axes1_in_base_x;
+        o->entry[1][k] = axis_x_rps_axes1_in_base_y;
+        o->entry[2][k] = axis_x_rps_axes1_in_base_z;
         o->entry[3][k] = H_a_2_x;
         o->entry[4][k] = H_a_2_y;
         o->entry[5][k] = H_a_2_z;
@@ -1066,7 +1077,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 18, w, code, H);
 }
 
-/* ---- M: 285 mul, 279 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 294 mul, 288 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1252,9 +1263,12 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         const real Q_t = inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass +
             h_2_x*inv_root_1)) - rps_link2_mass;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - S_x*d_phi_2_t*inv_root_1;
-        const real Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - S_y*d_phi_2_t*inv_root_1;
-        const real Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - S_z*d_phi_2_t*inv_root_1;
+        const real Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - d_phi_2_t*(c_1*rps_base_frame_xx +
+            rps_base_frame_xy*s_1);
+        const real Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - d_phi_2_t*(c_1*rps_base_frame_yx +
+            rps_base_frame_yy*s_1);
+        const real Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - d_phi_2_t*(c_1*rps_base_frame_zx +
+            rps_base_frame_zy*s_1);
         const real Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5;
         const real Q_t_16 = 2*Q_t_15 + rps_link2_mass;
         const real Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x -
@@ -1450,7 +1464,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 36, w, code, M);
 }
 
-/* ---- Z: 327 mul, 243 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 336 mul, 252 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -1661,9 +1675,9 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
         /* (rps-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -1671,7 +1685,8 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_rps_axes1_in_base_x +
+            S_dot_y*axis_x_rps_axes1_in_base_y + S_dot_z*axis_x_rps_axes1_in_base_z;
         /* (rps-V6) rate of joint 1 */
         const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x +
             S_dot_y*axis_y_rps_axes1_in_base_y + S_dot_z*axis_y_rps_axes1_in_base_z);
@@ -1692,7 +1707,8 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
            less gravity */
         const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
         const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        const real acc_2_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r1_x;
+        const real acc_2_o_x = axis_x_rps_axes1_in_base_x*u_1_x + axis_x_rps_axes1_in_base_y*u_1_y
+            + axis_x_rps_axes1_in_base_z*u_1_z - g_r1_x;
         const real acc_2_o_y = u_1_tip_y - g_r1_y;
         /* (rps-N11) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_o_x = acc_2_o_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1_o;
@@ -1705,9 +1721,12 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
            the leg's inertia and weight along all freedoms */
         const real G_o_t = f_2_o_y + inv_root_1*mu_1_o_z;
         /* (rps-N34) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_x*f_2_o_x;
-        const real U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_y*f_2_o_x;
-        const real U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_z*f_2_o_x;
+        const real U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x +
+            axis_x_rps_axes1_in_base_x*f_2_o_x;
+        const real U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y +
+            axis_x_rps_axes1_in_base_y*f_2_o_x;
+        const real U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z +
+            axis_x_rps_axes1_in_base_z*f_2_o_x;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
@@ -1802,7 +1821,7 @@ INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, rea
     deliver(Z_of, 6, w, code, Z);
 }
 
-/* ---- H: 81 mul, 60 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H: 96 mul, 69 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
@@ -1917,17 +1936,24 @@ INLINE void H_legs_rps(const prepared *m, size_t leg, size_t legs, const H_value
         const real root_1 = branch_1*root(rho2_1);
         /* (rps-V4) reciprocal vector 1 */
         const real inv_root_1 = 1/root_1;
+        /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1 = inv_root_1*px_1;
+        /* (rps-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
         /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_2_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_2_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
+        const real H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y -
+            axis_x_rps_axes1_in_base_y*q_in_base_z;
+        const real H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z -
+            axis_x_rps_axes1_in_base_z*q_in_base_x;
+        const real H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x -
+            axis_x_rps_axes1_in_base_x*q_in_base_y;
+        o->entry[0][k] = axis_x_rps_axes1_in_base_x;
+        o->entry[1][k] = axis_x_rps_axes1_in_base_y;
+        o->entry[2][k] = axis_x_rps_axes1_in_base_z;
         o->entry[3][k] = H_a_2_x;
         o->entry[4][k] = H_a_2_y;
         o->entry[5][k] = H_a_2_z;
@@ -2264,7 +2290,7 @@ INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, cons
     deliver(constraint_bias_of, 3, w, code, bias);
 }
 
-/* ---- required: 405 mul, 315 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 414 mul, 324 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -2515,9 +2541,12 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
         /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
+        const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
+        const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
         /* (rps-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -2525,26 +2554,28 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_rps_axes1_in_base_x +
+            S_dot_y*axis_x_rps_axes1_in_base_y + S_dot_z*axis_x_rps_axes1_in_base_z;
+        /* (rps-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x +
+            S_dot_y*axis_y_rps_axes1_in_base_y + S_dot_z*axis_y_rps_axes1_in_base_z);
+        /* (rps-V9) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
         const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_2_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_2_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
+        const real H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y -
+            axis_x_rps_axes1_in_base_y*q_in_base_z;
+        const real H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z -
+            axis_x_rps_axes1_in_base_z*q_in_base_x;
+        const real H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x -
+            axis_x_rps_axes1_in_base_x*q_in_base_y;
         /* (M9) moment of the column's unit force about the platform origin */
         const real Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz;
         const real Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz;
         const real Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz;
-        /* (rps-V4) reciprocal vector 1 */
-        const real axis_y_rps_axes1_x = axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz;
-        const real axis_y_rps_axes1_y = axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz;
-        const real axis_y_rps_axes1_z = axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz;
-        /* (rps-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_x + S_dot_y*axis_y_rps_axes1_y +
-            S_dot_z*axis_y_rps_axes1_z);
         /* (rps-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -2553,17 +2584,15 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (rps-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rps-A3) acceleration of the connection point */
-        const real S_ddot_tip_y = S_ddot_x*axis_y_rps_axes1_x + S_ddot_y*axis_y_rps_axes1_y +
-            S_ddot_z*axis_y_rps_axes1_z;
+        const real S_ddot_tip_y = S_ddot_x*axis_y_rps_axes1_in_base_x +
+            S_ddot_y*axis_y_rps_axes1_in_base_y + S_ddot_z*axis_y_rps_axes1_in_base_z;
         /* (rps-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
         /* (rps-A7) acceleration of joint 1 */
         const real qdd_1 = inv_root_1*rel_y;
         /* (rps-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r1_x;
+        const real acc_2_x = S_ddot_x*axis_x_rps_axes1_in_base_x +
+            S_ddot_y*axis_x_rps_axes1_in_base_y + S_ddot_z*axis_x_rps_axes1_in_base_z - g_r1_x;
         const real acc_2_y = S_ddot_tip_y - g_r1_y;
         /* (rps-N9) inertia force of link 2 less its weight */
         const real f_2_x = acc_2_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1;
@@ -2576,9 +2605,12 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real G_t = f_2_y + inv_root_1*mu_1_z;
         /* (rps-N30) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = -G_t*axis_y_rps_axes1_x - axis_x_x*f_2_x;
-        const real c_in_base_y = -G_t*axis_y_rps_axes1_y - axis_x_y*f_2_x;
-        const real c_in_base_z = -G_t*axis_y_rps_axes1_z - axis_x_z*f_2_x;
+        const real c_in_base_x = -G_t*axis_y_rps_axes1_in_base_x -
+            axis_x_rps_axes1_in_base_x*f_2_x;
+        const real c_in_base_y = -G_t*axis_y_rps_axes1_in_base_y -
+            axis_x_rps_axes1_in_base_y*f_2_x;
+        const real c_in_base_z = -G_t*axis_y_rps_axes1_in_base_z -
+            axis_x_rps_axes1_in_base_z*f_2_x;
         /* (E5) moment that actuators and external wrench must give */
         const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
         const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
@@ -2589,9 +2621,9 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         o->sum[3][k] = R_a_t;  /* total_rps_x_2 */
         o->sum[4][k] = R_a_t_2;  /* total_rps_y_2 */
         o->sum[5][k] = R_a_t_3;  /* total_rps_z_2 */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
+        o->entry[0][k] = axis_x_rps_axes1_in_base_x;
+        o->entry[1][k] = axis_x_rps_axes1_in_base_y;
+        o->entry[2][k] = axis_x_rps_axes1_in_base_z;
         o->entry[3][k] = H_a_2_x;
         o->entry[4][k] = H_a_2_y;
         o->entry[5][k] = H_a_2_z;
@@ -2849,7 +2881,7 @@ INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, r
     deliver(q_of, 6, w, code, q);
 }
 
-/* ---- joint_rates: 120 mul, 90 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates: 135 mul, 99 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -2959,13 +2991,10 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t leg, size_t legs, con
         const real branch_1 = m->branch_1[i];
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real rps_base_point_z = m->rps_base_point_z[i];
@@ -2994,20 +3023,21 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t leg, size_t legs, con
         const real root_1 = branch_1*root(rho2_1);
         /* (rps-V4) reciprocal vector 1 */
         const real inv_root_1 = 1/root_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1 = inv_root_1*px_1;
+        /* (rps-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
         /* (rps-V1) velocity of the connection point */
         const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
         const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*(c_1*rps_base_frame_xx + rps_base_frame_xy*s_1) +
+            S_dot_y*(c_1*rps_base_frame_yx + rps_base_frame_yy*s_1) +
+            S_dot_z*(c_1*rps_base_frame_zx + rps_base_frame_zy*s_1);
         /* (rps-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(S_dot_x*(axis_x_z*rps_base_frame_yz -
-            axis_x_y*rps_base_frame_zz) + S_dot_y*(axis_x_x*rps_base_frame_zz -
-            axis_x_z*rps_base_frame_xz) + S_dot_z*(axis_x_y*rps_base_frame_xz -
-            axis_x_x*rps_base_frame_yz));
+        const real qd_1 = inv_root_1*(S_dot_x*(c_1*rps_base_frame_xy - rps_base_frame_xx*s_1) +
+            S_dot_y*(c_1*rps_base_frame_yy - rps_base_frame_yx*s_1) +
+            S_dot_z*(c_1*rps_base_frame_zy - rps_base_frame_zx*s_1));
         o->entry[0][k] = qd_1;
         o->entry[1][k] = S_dot_tip_x;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
@@ -3058,7 +3088,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 6, w, code, rates);
 }
 
-/* ---- joint_accelerations: 189 mul, 144 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 204 mul, 153 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3196,13 +3226,10 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real branch_1 = m->branch_1[i];
         const real rps_base_frame_xx = m->rps_base_frame_xx[i];
         const real rps_base_frame_xy = m->rps_base_frame_xy[i];
-        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
         const real rps_base_frame_yx = m->rps_base_frame_yx[i];
         const real rps_base_frame_yy = m->rps_base_frame_yy[i];
-        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
         const real rps_base_frame_zx = m->rps_base_frame_zx[i];
         const real rps_base_frame_zy = m->rps_base_frame_zy[i];
-        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
         const real rps_base_point_x = m->rps_base_point_x[i];
         const real rps_base_point_y = m->rps_base_point_y[i];
         const real rps_base_point_z = m->rps_base_point_z[i];
@@ -3231,10 +3258,17 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real root_1 = branch_1*root(rho2_1);
         /* (rps-V4) reciprocal vector 1 */
         const real inv_root_1 = 1/root_1;
+        /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1 = inv_root_1*px_1;
+        /* (rps-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
         /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
+        const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
+        const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
         /* (rps-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3242,14 +3276,11 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
-        /* (rps-V4) reciprocal vector 1 */
-        const real axis_y_rps_axes1_x = axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz;
-        const real axis_y_rps_axes1_y = axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz;
-        const real axis_y_rps_axes1_z = axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz;
+        const real S_dot_tip_x = S_dot_x*axis_x_rps_axes1_in_base_x +
+            S_dot_y*axis_x_rps_axes1_in_base_y + S_dot_z*axis_x_rps_axes1_in_base_z;
         /* (rps-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_x + S_dot_y*axis_y_rps_axes1_y +
-            S_dot_z*axis_y_rps_axes1_z);
+        const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x +
+            S_dot_y*axis_y_rps_axes1_in_base_y + S_dot_z*axis_y_rps_axes1_in_base_z);
         /* (rps-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -3259,10 +3290,12 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
         /* (rps-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z +
+        const real rel_x = S_ddot_x*axis_x_rps_axes1_in_base_x +
+            S_ddot_y*axis_x_rps_axes1_in_base_y + S_ddot_z*axis_x_rps_axes1_in_base_z +
             qd_1*qd_1*root_1;
-        const real rel_y = S_ddot_x*axis_y_rps_axes1_x + S_ddot_y*axis_y_rps_axes1_y +
-            S_ddot_z*axis_y_rps_axes1_z - 2*S_dot_tip_x*qd_1;
+        const real rel_y = S_ddot_x*axis_y_rps_axes1_in_base_x +
+            S_ddot_y*axis_y_rps_axes1_in_base_y + S_ddot_z*axis_y_rps_axes1_in_base_z -
+            2*S_dot_tip_x*qd_1;
         /* (rps-A7) acceleration of joint 1 */
         const real qdd_1 = inv_root_1*rel_y;
         o->entry[0][k] = qdd_1;
@@ -3457,7 +3490,7 @@ INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *re
     deliver(constraints_of, 3, w, code, residual);
 }
 
-/* ---- legs: 258 mul, 189 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 267 mul, 198 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3642,9 +3675,12 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
         /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        const real axis_x_z = S_z*inv_root_1;
+        const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
+        const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
+        const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
         /* (rps-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3652,18 +3688,17 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_rps_axes1_in_base_x +
+            S_dot_y*axis_x_rps_axes1_in_base_y + S_dot_z*axis_x_rps_axes1_in_base_z;
+        /* (rps-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x +
+            S_dot_y*axis_y_rps_axes1_in_base_y + S_dot_z*axis_y_rps_axes1_in_base_z);
+        /* (rps-V9) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
         const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        /* (rps-V4) reciprocal vector 1 */
-        const real axis_y_rps_axes1_x = axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz;
-        const real axis_y_rps_axes1_y = axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz;
-        const real axis_y_rps_axes1_z = axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz;
-        /* (rps-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(S_dot_x*axis_y_rps_axes1_x + S_dot_y*axis_y_rps_axes1_y +
-            S_dot_z*axis_y_rps_axes1_z);
         /* (rps-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -3672,17 +3707,15 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (rps-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rps-A3) acceleration of the connection point */
-        const real S_ddot_tip_y = S_ddot_x*axis_y_rps_axes1_x + S_ddot_y*axis_y_rps_axes1_y +
-            S_ddot_z*axis_y_rps_axes1_z;
+        const real S_ddot_tip_y = S_ddot_x*axis_y_rps_axes1_in_base_x +
+            S_ddot_y*axis_y_rps_axes1_in_base_y + S_ddot_z*axis_y_rps_axes1_in_base_z;
         /* (rps-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
         /* (rps-A7) acceleration of joint 1 */
         const real qdd_1 = inv_root_1*rel_y;
         /* (rps-N3) acceleration of the reference point of link 2, less gravity */
-        const real acc_2_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r1_x;
+        const real acc_2_x = S_ddot_x*axis_x_rps_axes1_in_base_x +
+            S_ddot_y*axis_x_rps_axes1_in_base_y + S_ddot_z*axis_x_rps_axes1_in_base_z - g_r1_x;
         const real acc_2_y = S_ddot_tip_y - g_r1_y;
         /* (rps-N9) inertia force of link 2 less its weight */
         const real f_2_x = acc_2_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1;
@@ -3695,15 +3728,18 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         const real G_t = f_2_y + inv_root_1*mu_1_z;
         /* (rps-N30) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = -G_t*axis_y_rps_axes1_x - axis_x_x*f_2_x;
-        const real c_in_base_y = -G_t*axis_y_rps_axes1_y - axis_x_y*f_2_x;
-        const real c_in_base_z = -G_t*axis_y_rps_axes1_z - axis_x_z*f_2_x;
+        const real c_in_base_x = -G_t*axis_y_rps_axes1_in_base_x -
+            axis_x_rps_axes1_in_base_x*f_2_x;
+        const real c_in_base_y = -G_t*axis_y_rps_axes1_in_base_y -
+            axis_x_rps_axes1_in_base_y*f_2_x;
+        const real c_in_base_z = -G_t*axis_y_rps_axes1_in_base_z -
+            axis_x_rps_axes1_in_base_z*f_2_x;
         o->entry[0][k] = c_in_base_x;
         o->entry[1][k] = c_in_base_y;
         o->entry[2][k] = c_in_base_z;
-        o->entry[3][k] = axis_x_x;
-        o->entry[4][k] = axis_x_y;
-        o->entry[5][k] = axis_x_z;
+        o->entry[3][k] = axis_x_rps_axes1_in_base_x;
+        o->entry[4][k] = axis_x_rps_axes1_in_base_y;
+        o->entry[5][k] = axis_x_rps_axes1_in_base_z;
         o->entry[6][k] = rps_base_frame_xz;
         o->entry[7][k] = rps_base_frame_yz;
         o->entry[8][k] = rps_base_frame_zz;

@@ -106,19 +106,19 @@ extern const tripod_3rps_real tripod_3rps_HOME_Q[TRIPOD_3RPS_NJ];
    model is all NaN. */
 int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *model);
 
-/* Inertia matrix M. 285 mul, 279 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 294 mul, 288 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3rps_M(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real *M);
 size_t tripod_3rps_M_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     tripod_3rps_real *M, int *status);
 
-/* Velocity and gravity terms Z. 327 mul, 243 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 336 mul, 252 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int tripod_3rps_Z(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *Z);
 size_t tripod_3rps_Z_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     const tripod_3rps_real *V, tripod_3rps_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 81 mul, 60 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 96 mul, 69 add, 3 div, 3 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int tripod_3rps_H(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real *H);
 size_t tripod_3rps_H_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
@@ -131,7 +131,7 @@ int tripod_3rps_Hk(const tripod_3rps_model *model, const tripod_3rps_real *X, tr
 size_t tripod_3rps_Hk_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     tripod_3rps_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 561 mul, 480 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 570 mul, 489 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3rps_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H);
@@ -160,14 +160,14 @@ int tripod_3rps_inverse_kinematics(const tripod_3rps_model *model, const tripod_
 size_t tripod_3rps_inverse_kinematics_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *X, tripod_3rps_real *q, int *status);
 
-/* Rates of all joints. 120 mul, 90 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 135 mul, 99 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3rps_joint_rates(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *rates);
 size_t tripod_3rps_joint_rates_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *X, const tripod_3rps_real *V, tripod_3rps_real *rates, int *status);
 
-/* Accelerations of all joints. 189 mul, 144 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 204 mul, 153 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3rps_joint_accelerations(const tripod_3rps_model *model, const tripod_3rps_real *X,
     const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real *accelerations);
@@ -175,7 +175,7 @@ size_t tripod_3rps_joint_accelerations_batch(const tripod_3rps_model *model, siz
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
     *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 405 mul, 315 add,
+/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 414 mul, 324 add,
    3 div, 3 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
    wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int tripod_3rps_inverse_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
@@ -185,7 +185,7 @@ size_t tripod_3rps_inverse_dynamics_batch(const tripod_3rps_model *model, size_t
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
     tripod_3rps_real *wrench, tripod_3rps_real *tau, tripod_3rps_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 561 mul, 480 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 570 mul, 489 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3rps_forward_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
@@ -203,7 +203,7 @@ size_t tripod_3rps_complete_acceleration_batch(const tripod_3rps_model *model, s
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
     *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 258 mul, 189 add, 3 div, 3
+/* Force of each leg on the platform at its platform joint, base axes. 267 mul, 198 add, 3 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (3 x 3). */
 int tripod_3rps_leg_reactions(const tripod_3rps_model *model, const tripod_3rps_real *X, const

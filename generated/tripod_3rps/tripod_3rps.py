@@ -250,6 +250,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _rps = (len(_LEGS["rps"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -413,45 +414,45 @@ def _prepare(p):
     }
     legs = {
         "rps": {
-            "J_group_1_zz": np.broadcast_to(J_group_1_zz, (3,)),
-            "Q_t_10": np.broadcast_to(Q_t_10, (3,)),
-            "Q_t_11": np.broadcast_to(Q_t_11, (3,)),
-            "Q_t_12": np.broadcast_to(Q_t_12, (3,)),
-            "Q_t_13": np.broadcast_to(Q_t_13, (3,)),
-            "Q_t_5": np.broadcast_to(Q_t_5, (3,)),
-            "Q_t_6": np.broadcast_to(Q_t_6, (3,)),
-            "Q_t_7": np.broadcast_to(Q_t_7, (3,)),
-            "Q_t_8": np.broadcast_to(Q_t_8, (3,)),
-            "Q_t_9": np.broadcast_to(Q_t_9, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "h_1_x": np.broadcast_to(h_1_x, (3,)),
-            "h_1_y": np.broadcast_to(h_1_y, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "potential_t": np.broadcast_to(potential_t, (3,)),
-            "rps_base_frame_xx": np.broadcast_to(rps_base_frame_xx, (3,)),
-            "rps_base_frame_xy": np.broadcast_to(rps_base_frame_xy, (3,)),
-            "rps_base_frame_xz": np.broadcast_to(rps_base_frame_xz, (3,)),
-            "rps_base_frame_yx": np.broadcast_to(rps_base_frame_yx, (3,)),
-            "rps_base_frame_yy": np.broadcast_to(rps_base_frame_yy, (3,)),
-            "rps_base_frame_yz": np.broadcast_to(rps_base_frame_yz, (3,)),
-            "rps_base_frame_zx": np.broadcast_to(rps_base_frame_zx, (3,)),
-            "rps_base_frame_zy": np.broadcast_to(rps_base_frame_zy, (3,)),
-            "rps_base_frame_zz": np.broadcast_to(rps_base_frame_zz, (3,)),
-            "rps_base_point_x": np.broadcast_to(rps_base_point_x, (3,)),
-            "rps_base_point_y": np.broadcast_to(rps_base_point_y, (3,)),
-            "rps_base_point_z": np.broadcast_to(rps_base_point_z, (3,)),
-            "rps_link1_mass": np.broadcast_to(rps_link1_mass, (3,)),
-            "rps_link2_mass": np.broadcast_to(rps_link2_mass, (3,)),
-            "rps_platform_point_x": np.broadcast_to(rps_platform_point_x, (3,)),
-            "rps_platform_point_y": np.broadcast_to(rps_platform_point_y, (3,)),
-            "rps_platform_point_z": np.broadcast_to(rps_platform_point_z, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "size_t_3": np.broadcast_to(size_t_3, (3,)),
+            "J_group_1_zz": np.broadcast_to(J_group_1_zz, _rps),
+            "Q_t_10": np.broadcast_to(Q_t_10, _rps),
+            "Q_t_11": np.broadcast_to(Q_t_11, _rps),
+            "Q_t_12": np.broadcast_to(Q_t_12, _rps),
+            "Q_t_13": np.broadcast_to(Q_t_13, _rps),
+            "Q_t_5": np.broadcast_to(Q_t_5, _rps),
+            "Q_t_6": np.broadcast_to(Q_t_6, _rps),
+            "Q_t_7": np.broadcast_to(Q_t_7, _rps),
+            "Q_t_8": np.broadcast_to(Q_t_8, _rps),
+            "Q_t_9": np.broadcast_to(Q_t_9, _rps),
+            "b_r0_x": np.broadcast_to(b_r0_x, _rps),
+            "b_r0_y": np.broadcast_to(b_r0_y, _rps),
+            "branch_1": np.broadcast_to(branch_1, _rps),
+            "g_r0_x": np.broadcast_to(g_r0_x, _rps),
+            "g_r0_y": np.broadcast_to(g_r0_y, _rps),
+            "h_1_x": np.broadcast_to(h_1_x, _rps),
+            "h_1_y": np.broadcast_to(h_1_y, _rps),
+            "h_2_x": np.broadcast_to(h_2_x, _rps),
+            "h_2_y": np.broadcast_to(h_2_y, _rps),
+            "potential_t": np.broadcast_to(potential_t, _rps),
+            "rps_base_frame_xx": np.broadcast_to(rps_base_frame_xx, _rps),
+            "rps_base_frame_xy": np.broadcast_to(rps_base_frame_xy, _rps),
+            "rps_base_frame_xz": np.broadcast_to(rps_base_frame_xz, _rps),
+            "rps_base_frame_yx": np.broadcast_to(rps_base_frame_yx, _rps),
+            "rps_base_frame_yy": np.broadcast_to(rps_base_frame_yy, _rps),
+            "rps_base_frame_yz": np.broadcast_to(rps_base_frame_yz, _rps),
+            "rps_base_frame_zx": np.broadcast_to(rps_base_frame_zx, _rps),
+            "rps_base_frame_zy": np.broadcast_to(rps_base_frame_zy, _rps),
+            "rps_base_frame_zz": np.broadcast_to(rps_base_frame_zz, _rps),
+            "rps_base_point_x": np.broadcast_to(rps_base_point_x, _rps),
+            "rps_base_point_y": np.broadcast_to(rps_base_point_y, _rps),
+            "rps_base_point_z": np.broadcast_to(rps_base_point_z, _rps),
+            "rps_link1_mass": np.broadcast_to(rps_link1_mass, _rps),
+            "rps_link2_mass": np.broadcast_to(rps_link2_mass, _rps),
+            "rps_platform_point_x": np.broadcast_to(rps_platform_point_x, _rps),
+            "rps_platform_point_y": np.broadcast_to(rps_platform_point_y, _rps),
+            "rps_platform_point_z": np.broadcast_to(rps_platform_point_z, _rps),
+            "size": np.broadcast_to(size, _rps),
+            "size_t_3": np.broadcast_to(size_t_3, _rps),
         },
     }
     return shared, legs
@@ -605,7 +606,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 561 mul, 480 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 570 mul, 489 add, 3 div, 3 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -757,17 +758,17 @@ def _dynamics_rps(c, k, x, s, f):
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
     Q_t = (
     inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1)) -
         rps_link2_mass
     )
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - axis_x_x*d_phi_2_t
-    Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - axis_x_y*d_phi_2_t
-    Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - axis_x_z*d_phi_2_t
+    Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - axis_x_rps_axes1_in_base_x*d_phi_2_t
+    Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - axis_x_rps_axes1_in_base_y*d_phi_2_t
+    Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - axis_x_rps_axes1_in_base_z*d_phi_2_t
     Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5
     Q_t_16 = 2.0*Q_t_15 + rps_link2_mass
     Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x - Q_t_6 - Q_t_7
@@ -806,7 +807,10 @@ def _dynamics_rps(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
+        S_dot_z*axis_x_rps_axes1_in_base_z
+    )
     # (rps-V6) rate of joint 1
     qd_1 = (
     inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
@@ -830,7 +834,10 @@ def _dynamics_rps(c, k, x, s, f):
     # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_1*g_r0_x + g_r0_y*s_1
     g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-    acc_2_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r1_x
+    acc_2_o_x = (
+    axis_x_rps_axes1_in_base_x*u_1_x + axis_x_rps_axes1_in_base_y*u_1_y +
+        axis_x_rps_axes1_in_base_z*u_1_z - g_r1_x
+    )
     acc_2_o_y = u_1_tip_y - g_r1_y
     # (rps-N11) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_o_x = acc_2_o_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1_o
@@ -842,17 +849,17 @@ def _dynamics_rps(c, k, x, s, f):
     # (rps-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_2_o_y + inv_root_1*mu_1_o_z
     # (rps-N34) velocity and gravity terms of the leg force
-    U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_x*f_2_o_x
-    U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_y*f_2_o_x
-    U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_z*f_2_o_x
+    U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_rps_axes1_in_base_x*f_2_o_x
+    U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_rps_axes1_in_base_y*f_2_o_x
+    U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_rps_axes1_in_base_z*f_2_o_x
     # (M7) rotational part of Z
     Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
     Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
     Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_2_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
+    H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
+    H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz
     Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz
@@ -862,8 +869,9 @@ def _dynamics_rps(c, k, x, s, f):
     ok, (Q_t_16, Q_t_17, Q_t_18, Q_t_20, Q_t_21, Q_t_23, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
         M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
         M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (axis_x_x, axis_x_y, axis_x_z, H_a_2_x, H_a_2_y, H_a_2_z, rps_base_frame_xz,
-        rps_base_frame_yz, rps_base_frame_zz, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z, u_1_tip_z,),
+        (axis_x_rps_axes1_in_base_x, axis_x_rps_axes1_in_base_y, axis_x_rps_axes1_in_base_z,
+        H_a_2_x, H_a_2_y, H_a_2_z, rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz,
+        Hk_a_1_x, Hk_a_1_y, Hk_a_1_z, u_1_tip_z,),
     )
 
 
@@ -918,7 +926,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 285 mul, 279 add, 3 div, 3 sqrt, 0 trig
+# M: 294 mul, 288 add, 3 div, 3 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1034,9 +1042,15 @@ def _M_rps(c, k, x, s, f):
         rps_link2_mass
     )
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - S_x*d_phi_2_t*inv_root_1
-    Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - S_y*d_phi_2_t*inv_root_1
-    Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - S_z*d_phi_2_t*inv_root_1
+    Q_t_3 = (
+    Q_t_2*axis_y_rps_axes1_in_base_x - d_phi_2_t*(c_1*rps_base_frame_xx + rps_base_frame_xy*s_1)
+    )
+    Q_t_4 = (
+    Q_t_2*axis_y_rps_axes1_in_base_y - d_phi_2_t*(c_1*rps_base_frame_yx + rps_base_frame_yy*s_1)
+    )
+    Q_t_14 = (
+    Q_t_2*axis_y_rps_axes1_in_base_z - d_phi_2_t*(c_1*rps_base_frame_zx + rps_base_frame_zy*s_1)
+    )
     Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5
     Q_t_16 = 2.0*Q_t_15 + rps_link2_mass
     Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x - Q_t_6 - Q_t_7
@@ -1116,7 +1130,7 @@ def _M_after(c, s, t, f):
     )
 
 
-# Z: 327 mul, 243 add, 3 div, 3 sqrt, 0 trig
+# Z: 336 mul, 252 add, 3 div, 3 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
@@ -1247,9 +1261,9 @@ def _Z_rps(c, k, x, s, f):
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
     # (rps-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -1257,7 +1271,10 @@ def _Z_rps(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
+        S_dot_z*axis_x_rps_axes1_in_base_z
+    )
     # (rps-V6) rate of joint 1
     qd_1 = (
     inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
@@ -1280,7 +1297,10 @@ def _Z_rps(c, k, x, s, f):
     # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_1*g_r0_x + g_r0_y*s_1
     g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-    acc_2_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r1_x
+    acc_2_o_x = (
+    axis_x_rps_axes1_in_base_x*u_1_x + axis_x_rps_axes1_in_base_y*u_1_y +
+        axis_x_rps_axes1_in_base_z*u_1_z - g_r1_x
+    )
     acc_2_o_y = u_1_tip_y - g_r1_y
     # (rps-N11) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_o_x = acc_2_o_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1_o
@@ -1292,9 +1312,9 @@ def _Z_rps(c, k, x, s, f):
     # (rps-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_2_o_y + inv_root_1*mu_1_o_z
     # (rps-N34) velocity and gravity terms of the leg force
-    U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_x*f_2_o_x
-    U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_y*f_2_o_x
-    U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_z*f_2_o_x
+    U_in_base_x = G_o_t*axis_y_rps_axes1_in_base_x + axis_x_rps_axes1_in_base_x*f_2_o_x
+    U_in_base_y = G_o_t*axis_y_rps_axes1_in_base_y + axis_x_rps_axes1_in_base_y*f_2_o_x
+    U_in_base_z = G_o_t*axis_y_rps_axes1_in_base_z + axis_x_rps_axes1_in_base_z*f_2_o_x
     # (M7) rotational part of Z
     Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
     Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
@@ -1318,7 +1338,7 @@ def _Z_after(c, s, t, f):
     return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
 
 
-# H: 81 mul, 60 add, 3 div, 3 sqrt, 0 trig
+# H: 96 mul, 69 add, 3 div, 3 sqrt, 0 trig
 def _H_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1390,16 +1410,23 @@ def _H_rps(c, k, x, s, f):
     root_1 = branch_1*sqrt(rho2_1)
     # (rps-V4) reciprocal vector 1
     inv_root_1 = 1.0/root_1
+    # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    c_1 = inv_root_1*px_1
+    # (rps-K8) sine of the angle of joint 1 from its reference direction
+    s_1 = inv_root_1*py_1
     # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
     # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_2_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
+    H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
+    H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
-    return (ok, (), (axis_x_x, axis_x_y, axis_x_z, H_a_2_x, H_a_2_y, H_a_2_z,),)
+    return (
+    ok, (), (axis_x_rps_axes1_in_base_x, axis_x_rps_axes1_in_base_y, axis_x_rps_axes1_in_base_z,
+        H_a_2_x, H_a_2_y, H_a_2_z,),
+    )
 
 
 # Hk: 45 mul, 27 add, 0 div, 0 sqrt, 0 trig
@@ -1535,7 +1562,7 @@ def _constraint_bias_rps(c, k, x, s, f):
     return (ok, (), (u_1_tip_z,),)
 
 
-# required: 405 mul, 315 add, 3 div, 3 sqrt, 0 trig
+# required: 414 mul, 324 add, 3 div, 3 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
@@ -1709,9 +1736,12 @@ def _required_rps(c, k, x, s, f):
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
     # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
+    axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
+    axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
     # (rps-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -1719,27 +1749,28 @@ def _required_rps(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
+        S_dot_z*axis_x_rps_axes1_in_base_z
+    )
+    # (rps-V6) rate of joint 1
+    qd_1 = (
+    inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
+        S_dot_z*axis_y_rps_axes1_in_base_z)
+    )
+    # (rps-V9) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_1*g_r0_x + g_r0_y*s_1
     g_r1_y = c_1*g_r0_y - g_r0_x*s_1
     # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_2_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y - axis_x_rps_axes1_in_base_y*q_in_base_z
+    H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z - axis_x_rps_axes1_in_base_z*q_in_base_x
+    H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x - axis_x_rps_axes1_in_base_x*q_in_base_y
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz
     Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz
     Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz
-    # (rps-V4) reciprocal vector 1
-    axis_y_rps_axes1_x = axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz
-    axis_y_rps_axes1_y = axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz
-    axis_y_rps_axes1_z = axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz
-    # (rps-V6) rate of joint 1
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_y_rps_axes1_x + S_dot_y*axis_y_rps_axes1_y +
-        S_dot_z*axis_y_rps_axes1_z)
-    )
     # (rps-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -1748,18 +1779,19 @@ def _required_rps(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (rps-V9) centripetal tensor of link 1
-    W_1_t = qd_1*qd_1
-    # (rps-A3) acceleration of the connection point
     S_ddot_tip_y = (
-    S_ddot_x*axis_y_rps_axes1_x + S_ddot_y*axis_y_rps_axes1_y + S_ddot_z*axis_y_rps_axes1_z
+    S_ddot_x*axis_y_rps_axes1_in_base_x + S_ddot_y*axis_y_rps_axes1_in_base_y +
+        S_ddot_z*axis_y_rps_axes1_in_base_z
     )
     # (rps-A5) acceleration of the connection point left to the joint accelerations
     rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
     # (rps-A7) acceleration of joint 1
     qdd_1 = inv_root_1*rel_y
     # (rps-N3) acceleration of the reference point of link 2, less gravity
-    acc_2_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r1_x
+    acc_2_x = (
+    S_ddot_x*axis_x_rps_axes1_in_base_x + S_ddot_y*axis_x_rps_axes1_in_base_y +
+        S_ddot_z*axis_x_rps_axes1_in_base_z - g_r1_x
+    )
     acc_2_y = S_ddot_tip_y - g_r1_y
     # (rps-N9) inertia force of link 2 less its weight
     f_2_x = acc_2_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1
@@ -1769,18 +1801,19 @@ def _required_rps(c, k, x, s, f):
     # (rps-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_2_y + inv_root_1*mu_1_z
     # (rps-N30) leg force on the platform without actuation and without the mass at the connection point
-    c_in_base_x = -G_t*axis_y_rps_axes1_x - axis_x_x*f_2_x
-    c_in_base_y = -G_t*axis_y_rps_axes1_y - axis_x_y*f_2_x
-    c_in_base_z = -G_t*axis_y_rps_axes1_z - axis_x_z*f_2_x
+    c_in_base_x = -G_t*axis_y_rps_axes1_in_base_x - axis_x_rps_axes1_in_base_x*f_2_x
+    c_in_base_y = -G_t*axis_y_rps_axes1_in_base_y - axis_x_rps_axes1_in_base_y*f_2_x
+    c_in_base_z = -G_t*axis_y_rps_axes1_in_base_z - axis_x_rps_axes1_in_base_z*f_2_x
     # (E5) moment that actuators and external wrench must give
     R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
     R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
     R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
     return (
-    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (axis_x_x, axis_x_y,
-        axis_x_z, H_a_2_x, H_a_2_y, H_a_2_z, rps_base_frame_xz, rps_base_frame_yz,
-        rps_base_frame_zz, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
+    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,),
+        (axis_x_rps_axes1_in_base_x, axis_x_rps_axes1_in_base_y, axis_x_rps_axes1_in_base_z,
+        H_a_2_x, H_a_2_y, H_a_2_z, rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz,
+        Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
     )
 
 
@@ -1878,7 +1911,7 @@ def _inverse_kinematics_rps(c, k, x, s, f):
     return (ok, (), (q_1, root_1,),)
 
 
-# joint_rates: 120 mul, 90 add, 3 div, 3 sqrt, 0 trig
+# joint_rates: 135 mul, 99 add, 3 div, 3 sqrt, 0 trig
 def _joint_rates_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1937,10 +1970,10 @@ def _joint_rates_before(c, X, V, f):
 def _joint_rates_rps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
-        rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy,
-        rps_base_frame_zz, rps_base_point_x, rps_base_point_y, rps_base_point_z,
-        rps_platform_point_x, rps_platform_point_y, rps_platform_point_z, size, size_t_3,
+    branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
+        rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z, size,
+        size_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -1969,26 +2002,29 @@ def _joint_rates_rps(c, k, x, s, f):
     root_1 = branch_1*sqrt(rho2_1)
     # (rps-V4) reciprocal vector 1
     inv_root_1 = 1.0/root_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    c_1 = inv_root_1*px_1
+    # (rps-K8) sine of the angle of joint 1 from its reference direction
+    s_1 = inv_root_1*py_1
     # (rps-V1) velocity of the connection point
     S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
     S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*(c_1*rps_base_frame_xx + rps_base_frame_xy*s_1) + S_dot_y*(c_1*rps_base_frame_yx +
+        rps_base_frame_yy*s_1) + S_dot_z*(c_1*rps_base_frame_zx + rps_base_frame_zy*s_1)
+    )
     # (rps-V6) rate of joint 1
     qd_1 = (
-    inv_root_1*(S_dot_x*(axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz) +
-        S_dot_y*(axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz) +
-        S_dot_z*(axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz))
+    inv_root_1*(S_dot_x*(c_1*rps_base_frame_xy - rps_base_frame_xx*s_1) +
+        S_dot_y*(c_1*rps_base_frame_yy - rps_base_frame_yx*s_1) + S_dot_z*(c_1*rps_base_frame_zy -
+        rps_base_frame_zx*s_1))
     )
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
     return (ok, (), (qd_1, S_dot_tip_x,),)
 
 
-# joint_accelerations: 189 mul, 144 add, 3 div, 3 sqrt, 0 trig
+# joint_accelerations: 204 mul, 153 add, 3 div, 3 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2061,10 +2097,10 @@ def _joint_accelerations_before(c, X, V, A, f):
 def _joint_accelerations_rps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx,
-        rps_base_frame_yy, rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy,
-        rps_base_frame_zz, rps_base_point_x, rps_base_point_y, rps_base_point_z,
-        rps_platform_point_x, rps_platform_point_y, rps_platform_point_z, size, size_t_3,
+    branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
+        rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z, size,
+        size_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2094,10 +2130,17 @@ def _joint_accelerations_rps(c, k, x, s, f):
     root_1 = branch_1*sqrt(rho2_1)
     # (rps-V4) reciprocal vector 1
     inv_root_1 = 1.0/root_1
+    # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    c_1 = inv_root_1*px_1
+    # (rps-K8) sine of the angle of joint 1 from its reference direction
+    s_1 = inv_root_1*py_1
     # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
+    axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
+    axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
     # (rps-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2105,15 +2148,14 @@ def _joint_accelerations_rps(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
-    # (rps-V4) reciprocal vector 1
-    axis_y_rps_axes1_x = axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz
-    axis_y_rps_axes1_y = axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz
-    axis_y_rps_axes1_z = axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz
+    S_dot_tip_x = (
+    S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
+        S_dot_z*axis_x_rps_axes1_in_base_z
+    )
     # (rps-V6) rate of joint 1
     qd_1 = (
-    inv_root_1*(S_dot_x*axis_y_rps_axes1_x + S_dot_y*axis_y_rps_axes1_y +
-        S_dot_z*axis_y_rps_axes1_z)
+    inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
+        S_dot_z*axis_y_rps_axes1_in_base_z)
     )
     # (rps-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
@@ -2124,10 +2166,13 @@ def _joint_accelerations_rps(c, k, x, s, f):
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
     # (rps-A5) acceleration of the connection point left to the joint accelerations
-    rel_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z + qd_1*qd_1*root_1
+    rel_x = (
+    S_ddot_x*axis_x_rps_axes1_in_base_x + S_ddot_y*axis_x_rps_axes1_in_base_y +
+        S_ddot_z*axis_x_rps_axes1_in_base_z + qd_1*qd_1*root_1
+    )
     rel_y = (
-    S_ddot_x*axis_y_rps_axes1_x + S_ddot_y*axis_y_rps_axes1_y + S_ddot_z*axis_y_rps_axes1_z -
-        2.0*S_dot_tip_x*qd_1
+    S_ddot_x*axis_y_rps_axes1_in_base_x + S_ddot_y*axis_y_rps_axes1_in_base_y +
+        S_ddot_z*axis_y_rps_axes1_in_base_z - 2.0*S_dot_tip_x*qd_1
     )
     # (rps-A7) acceleration of joint 1
     qdd_1 = inv_root_1*rel_y
@@ -2200,7 +2245,7 @@ def _constraints_rps(c, k, x, s, f):
     return (ok, (), (xi_1_t,),)
 
 
-# legs: 258 mul, 189 add, 3 div, 3 sqrt, 0 trig
+# legs: 267 mul, 198 add, 3 div, 3 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2312,9 +2357,12 @@ def _legs_rps(c, k, x, s, f):
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
     # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
-    axis_x_x = S_x*inv_root_1
-    axis_x_y = S_y*inv_root_1
-    axis_x_z = S_z*inv_root_1
+    axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
+    axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
+    axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
     # (rps-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2322,19 +2370,20 @@ def _legs_rps(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_rps_axes1_in_base_x + S_dot_y*axis_x_rps_axes1_in_base_y +
+        S_dot_z*axis_x_rps_axes1_in_base_z
+    )
+    # (rps-V6) rate of joint 1
+    qd_1 = (
+    inv_root_1*(S_dot_x*axis_y_rps_axes1_in_base_x + S_dot_y*axis_y_rps_axes1_in_base_y +
+        S_dot_z*axis_y_rps_axes1_in_base_z)
+    )
+    # (rps-V9) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_1*g_r0_x + g_r0_y*s_1
     g_r1_y = c_1*g_r0_y - g_r0_x*s_1
-    # (rps-V4) reciprocal vector 1
-    axis_y_rps_axes1_x = axis_x_z*rps_base_frame_yz - axis_x_y*rps_base_frame_zz
-    axis_y_rps_axes1_y = axis_x_x*rps_base_frame_zz - axis_x_z*rps_base_frame_xz
-    axis_y_rps_axes1_z = axis_x_y*rps_base_frame_xz - axis_x_x*rps_base_frame_yz
-    # (rps-V6) rate of joint 1
-    qd_1 = (
-    inv_root_1*(S_dot_x*axis_y_rps_axes1_x + S_dot_y*axis_y_rps_axes1_y +
-        S_dot_z*axis_y_rps_axes1_z)
-    )
     # (rps-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -2343,18 +2392,19 @@ def _legs_rps(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (rps-V9) centripetal tensor of link 1
-    W_1_t = qd_1*qd_1
-    # (rps-A3) acceleration of the connection point
     S_ddot_tip_y = (
-    S_ddot_x*axis_y_rps_axes1_x + S_ddot_y*axis_y_rps_axes1_y + S_ddot_z*axis_y_rps_axes1_z
+    S_ddot_x*axis_y_rps_axes1_in_base_x + S_ddot_y*axis_y_rps_axes1_in_base_y +
+        S_ddot_z*axis_y_rps_axes1_in_base_z
     )
     # (rps-A5) acceleration of the connection point left to the joint accelerations
     rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_1
     # (rps-A7) acceleration of joint 1
     qdd_1 = inv_root_1*rel_y
     # (rps-N3) acceleration of the reference point of link 2, less gravity
-    acc_2_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r1_x
+    acc_2_x = (
+    S_ddot_x*axis_x_rps_axes1_in_base_x + S_ddot_y*axis_x_rps_axes1_in_base_y +
+        S_ddot_z*axis_x_rps_axes1_in_base_z - g_r1_x
+    )
     acc_2_y = S_ddot_tip_y - g_r1_y
     # (rps-N9) inertia force of link 2 less its weight
     f_2_x = acc_2_x*rps_link2_mass - W_1_t*h_2_x - h_2_y*qdd_1
@@ -2364,13 +2414,14 @@ def _legs_rps(c, k, x, s, f):
     # (rps-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_2_y + inv_root_1*mu_1_z
     # (rps-N30) leg force on the platform without actuation and without the mass at the connection point
-    c_in_base_x = -G_t*axis_y_rps_axes1_x - axis_x_x*f_2_x
-    c_in_base_y = -G_t*axis_y_rps_axes1_y - axis_x_y*f_2_x
-    c_in_base_z = -G_t*axis_y_rps_axes1_z - axis_x_z*f_2_x
+    c_in_base_x = -G_t*axis_y_rps_axes1_in_base_x - axis_x_rps_axes1_in_base_x*f_2_x
+    c_in_base_y = -G_t*axis_y_rps_axes1_in_base_y - axis_x_rps_axes1_in_base_y*f_2_x
+    c_in_base_z = -G_t*axis_y_rps_axes1_in_base_z - axis_x_rps_axes1_in_base_z*f_2_x
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
     return (
-    ok, (), (c_in_base_x, c_in_base_y, c_in_base_z, axis_x_x, axis_x_y, axis_x_z,
-        rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz,),
+    ok, (), (c_in_base_x, c_in_base_y, c_in_base_z, axis_x_rps_axes1_in_base_x,
+        axis_x_rps_axes1_in_base_y, axis_x_rps_axes1_in_base_z, rps_base_frame_xz,
+        rps_base_frame_yz, rps_base_frame_zz,),
     )
 
 
@@ -2791,11 +2842,10 @@ arrays=(('qd', (6,)),),
             _joint_rates_rps,
             "rps",
 (),
-('branch_1', 'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_xz', 'rps_base_frame_yx',
-            'rps_base_frame_yy', 'rps_base_frame_yz', 'rps_base_frame_zx', 'rps_base_frame_zy',
-            'rps_base_frame_zz', 'rps_base_point_x', 'rps_base_point_y', 'rps_base_point_z',
-            'rps_platform_point_x', 'rps_platform_point_y', 'rps_platform_point_z', 'size',
-            'size_t_3'),
+('branch_1', 'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_yx', 'rps_base_frame_yy',
+            'rps_base_frame_zx', 'rps_base_frame_zy', 'rps_base_point_x', 'rps_base_point_y',
+            'rps_base_point_z', 'rps_platform_point_x', 'rps_platform_point_y',
+            'rps_platform_point_z', 'size', 'size_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -2820,11 +2870,10 @@ arrays=(('qdd', (6,)),),
             _joint_accelerations_rps,
             "rps",
 (),
-('branch_1', 'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_xz', 'rps_base_frame_yx',
-            'rps_base_frame_yy', 'rps_base_frame_yz', 'rps_base_frame_zx', 'rps_base_frame_zy',
-            'rps_base_frame_zz', 'rps_base_point_x', 'rps_base_point_y', 'rps_base_point_z',
-            'rps_platform_point_x', 'rps_platform_point_y', 'rps_platform_point_z', 'size',
-            'size_t_3'),
+('branch_1', 'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_yx', 'rps_base_frame_yy',
+            'rps_base_frame_zx', 'rps_base_frame_zy', 'rps_base_point_x', 'rps_base_point_y',
+            'rps_base_point_z', 'rps_platform_point_x', 'rps_platform_point_y',
+            'rps_platform_point_z', 'size', 'size_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -3063,7 +3112,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -519,7 +519,7 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2211 mul, 1503 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 2235 mul, 1521 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -816,24 +816,29 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_w_1_t_14*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_w_1_t_14;
+        const real d_alpha_1_t = inv_w_1_t_25*s_2;
+        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
         /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real d_acc_3_t = d_alpha_1_t_2*root_2;
@@ -858,34 +863,34 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
             h_3_x*inv_root_2)) - upu_link3_mass;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_14 - upu_link3_mass;
+        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
         const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_x + axis_x_x*d_phi_3_t +
+        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
             axis_z_upu_axes2_in_base_x*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_y + axis_x_y*d_phi_3_t +
+        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
             axis_z_upu_axes2_in_base_y*d_G_t;
-        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_z + axis_x_z*d_phi_3_t +
+        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
             axis_z_upu_axes2_in_base_z*d_G_t;
-        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_x*d_phi_3_t_2;
-        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_y*d_phi_3_t_2;
-        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_z*d_phi_3_t_2;
-        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_x;
+        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
+        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
+        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
+        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
         const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
-        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_y + Q_t_6*axis_y_upu_axes2_x +
+        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
             Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
-        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_z +
-            Q_t_7*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_y + Q_t_9*axis_z_upu_axes2_in_base_y;
+        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
+        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
         const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
-        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_z +
-            Q_t_7*axis_y_upu_axes2_y + Q_t_9*axis_z_upu_axes2_in_base_z;
-        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_z;
+        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
+        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
         const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
         /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_2;
-        const real o_1_y = end_p1_r3_x*w_1_t_2;
-        const real o_1_y_2 = w_1_t_2*(c_2*end_p1_r3_y - end_p1_r3_x*s_2);
-        const real o_1_z = n_m1_r0_y*w_1_t_2;
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
+        const real o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2);
+        const real o_1_z = n_m1_r0_y*w_1_t_4;
         /* (upu-A17) coefficient of the acceleration in: angular acceleration of link 1 */
         const real d0_alpha_1_t = o_1_y_2*s_2;
         const real d0_alpha_1_t_2 = c_2*o_1_y_2;
@@ -913,8 +918,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
             _y_2*h_3_x - d0_acc_3_t_2*upu_link3_mass));
         /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_14;
-        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_14;
+        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
+        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
         const real d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2);
         const real d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2);
         /* (M2) coupling block of M */
@@ -1125,18 +1130,20 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
         /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z;
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
         const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         /* (upu-V21) angular velocity of link 1 */
         const real omega_1_t = qd_1*s_2;
@@ -1174,10 +1181,10 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
             axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
         /* (upu-A11) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = axis_y_upu_axes2_x*u_1_x + axis_y_upu_axes2_y*u_1_y +
-            axis_y_upu_axes2_z*u_1_z - bias_t_2;
+        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
+            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
         const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o = inv_w_1_t_14*rel_o_z + nu_1*w_1_t_2;
+        const real qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4;
         /* (upu-A19) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o;
@@ -1194,7 +1201,8 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
         const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
         const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x;
+        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
+            axis_x_upu_axes2_z*u_1_z - g_r3_x;
         const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
         const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
         /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
@@ -1222,41 +1230,41 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
-        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_14;
+        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
         /* (upu-N55) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_upu_axes2_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
-            axis_x_x*f_3_o_x;
-        const real U_in_base_y = G_o_t*axis_y_upu_axes2_y + G_o_t_2*axis_z_upu_axes2_in_base_y +
-            axis_x_y*f_3_o_x;
-        const real U_in_base_z = G_o_t*axis_y_upu_axes2_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
-            axis_x_z*f_3_o_x;
+        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
+            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
+        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
+            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
+        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
+            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
         /* (upu-N45) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_m_o_t = N_2_o_r0_y*o_1_x;
         const real G_m_o_t_2 = N_2_o_r0_y*o_1_y;
         /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_t_2*axis_y_upu_axes2_x + U_in_base_z*q_in_base_y -
-            G_m_o_t*axis_x_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_t_2*axis_y_upu_axes2_y + U_in_base_x*q_in_base_z -
-            G_m_o_t*axis_x_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_t_2*axis_y_upu_axes2_z + U_in_base_y*q_in_base_x -
-            G_m_o_t*axis_x_z - U_in_base_x*q_in_base_y;
+        const real Z_a_t = G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
+            G_m_o_t*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
+        const real Z_a_t_2 = G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
+            G_m_o_t*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
+        const real Z_a_t_3 = G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
+            G_m_o_t*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
         const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
         const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
         const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_y*end_p1_r3_y - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
         /* (M11) part of the constraint's second derivative that does not hold the acceleration */
         const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
         o->sum[0][k] = Q_t_12;  /* total_upu_xx */
@@ -1286,9 +1294,9 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->sum[24][k] = Z_a_t;  /* total_upu_x_2 */
         o->sum[25][k] = Z_a_t_2;  /* total_upu_y_2 */
         o->sum[26][k] = Z_a_t_3;  /* total_upu_z_2 */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
         o->entry[3][k] = H_a_3_t;
         o->entry[4][k] = H_a_3_t_2;
         o->entry[5][k] = H_a_3_t_3;
@@ -1302,7 +1310,7 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -1491,7 +1499,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 18, w, code, H);
 }
 
-/* ---- M: 1626 mul, 1047 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 1650 mul, 1065 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1710,24 +1718,29 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_w_1_t_14*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_w_1_t_14;
+        const real d_alpha_1_t = inv_w_1_t_25*s_2;
+        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
         /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real d_acc_3_t = d_alpha_1_t_2*root_2;
@@ -1752,34 +1765,34 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
             h_3_x*inv_root_2)) - upu_link3_mass;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_14 - upu_link3_mass;
+        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
         const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_x + axis_x_x*d_phi_3_t +
+        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
             axis_z_upu_axes2_in_base_x*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_y + axis_x_y*d_phi_3_t +
+        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
             axis_z_upu_axes2_in_base_y*d_G_t;
-        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_z + axis_x_z*d_phi_3_t +
+        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
             axis_z_upu_axes2_in_base_z*d_G_t;
-        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_x*d_phi_3_t_2;
-        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_y*d_phi_3_t_2;
-        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_z*d_phi_3_t_2;
-        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_x;
+        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
+        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
+        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
+        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
         const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
-        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_y + Q_t_6*axis_y_upu_axes2_x +
+        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
             Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
-        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_z +
-            Q_t_7*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_y + Q_t_9*axis_z_upu_axes2_in_base_y;
+        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
+        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
         const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
-        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_z +
-            Q_t_7*axis_y_upu_axes2_y + Q_t_9*axis_z_upu_axes2_in_base_z;
-        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_z;
+        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
+        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
         const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
         /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_2;
-        const real o_1_y = end_p1_r3_x*w_1_t_2;
-        const real o_1_y_2 = w_1_t_2*(c_2*end_p1_r3_y - end_p1_r3_x*s_2);
-        const real o_1_z = n_m1_r0_y*w_1_t_2;
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
+        const real o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2);
+        const real o_1_z = n_m1_r0_y*w_1_t_4;
         /* (upu-A17) coefficient of the acceleration in: angular acceleration of link 1 */
         const real d0_alpha_1_t = o_1_y_2*s_2;
         const real d0_alpha_1_t_2 = c_2*o_1_y_2;
@@ -1807,8 +1820,8 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
             _y_2*h_3_x - d0_acc_3_t_2*upu_link3_mass));
         /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_14;
-        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_14;
+        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
+        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
         const real d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2);
         const real d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2);
         /* (M2) coupling block of M */
@@ -2035,7 +2048,7 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -2176,7 +2189,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 36, w, code, M);
 }
 
-/* ---- Z: 804 mul, 588 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 828 mul, 606 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -2438,24 +2451,29 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_2;
-        const real o_1_y = end_p1_r3_x*w_1_t_2;
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -2464,18 +2482,20 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
         /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z;
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
         const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         /* (upu-V21) angular velocity of link 1 */
         const real omega_1_t = qd_1*s_2;
@@ -2513,10 +2533,10 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
             axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
         /* (upu-A11) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = axis_y_upu_axes2_x*u_1_x + axis_y_upu_axes2_y*u_1_y +
-            axis_y_upu_axes2_z*u_1_z - bias_t_2;
+        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
+            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
         const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o = inv_w_1_t_14*rel_o_z + nu_1*w_1_t_2;
+        const real qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4;
         /* (upu-A19) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o;
@@ -2533,7 +2553,8 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
         const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
         const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x;
+        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
+            axis_x_upu_axes2_z*u_1_z - g_r3_x;
         const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
         const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
         /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
@@ -2561,25 +2582,25 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
-        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_14;
+        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
         /* (upu-N55) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_upu_axes2_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
-            axis_x_x*f_3_o_x;
-        const real U_in_base_y = G_o_t*axis_y_upu_axes2_y + G_o_t_2*axis_z_upu_axes2_in_base_y +
-            axis_x_y*f_3_o_x;
-        const real U_in_base_z = G_o_t*axis_y_upu_axes2_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
-            axis_x_z*f_3_o_x;
+        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
+            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
+        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
+            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
+        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
+            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
         /* (upu-N45) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_m_o_t = N_2_o_r0_y*o_1_x;
         const real G_m_o_t_2 = N_2_o_r0_y*o_1_y;
         /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_t_2*axis_y_upu_axes2_x + U_in_base_z*q_in_base_y -
-            G_m_o_t*axis_x_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_t_2*axis_y_upu_axes2_y + U_in_base_x*q_in_base_z -
-            G_m_o_t*axis_x_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_t_2*axis_y_upu_axes2_z + U_in_base_y*q_in_base_x -
-            G_m_o_t*axis_x_z - U_in_base_x*q_in_base_y;
+        const real Z_a_t = G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
+            G_m_o_t*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
+        const real Z_a_t_2 = G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
+            G_m_o_t*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
+        const real Z_a_t_3 = G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
+            G_m_o_t*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
         o->sum[0][k] = U_in_base_x;  /* total_upu_x */
         o->sum[1][k] = U_in_base_y;  /* total_upu_y */
         o->sum[2][k] = U_in_base_z;  /* total_upu_z */
@@ -2589,7 +2610,7 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -2672,7 +2693,7 @@ INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, rea
     deliver(Z_of, 6, w, code, Z);
 }
 
-/* ---- H: 93 mul, 69 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- H: 168 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
@@ -2752,6 +2773,7 @@ INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_value
         const real R_zx = s->R_zx[j];
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
+        const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
@@ -2786,6 +2808,8 @@ INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_value
         const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
         /* (upu-K4) squared amplitude */
         const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
         /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
         const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
         /* (upu-K13) squared amplitude */
@@ -2794,17 +2818,39 @@ INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_value
         const real root_2 = branch_2*root(rho2_2);
         /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
         o->entry[3][k] = H_a_3_t;
         o->entry[4][k] = H_a_3_t_2;
         o->entry[5][k] = H_a_3_t_3;
@@ -2858,7 +2904,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 18, w, code, H);
 }
 
-/* ---- Hk: 309 mul, 189 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- Hk: 333 mul, 207 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
@@ -3021,27 +3067,32 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
            */
         const real n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
         const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
         const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
         const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = end_p1_r3_x*(axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z) + n_c_t_2*q_in_base_z - axis_x_x*end_p1_r3_y -
-            n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = end_p1_r3_x*(axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x) + n_c_t_3*q_in_base_x - axis_x_y*end_p1_r3_y -
-            n_c_t*q_in_base_z;
-        const real Hk_a_1_z = end_p1_r3_x*(axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y) + n_c_t*q_in_base_y - axis_x_z*end_p1_r3_y -
-            n_c_t_2*q_in_base_x;
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+            end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x;
         o->entry[0][k] = -n_c_t;
         o->entry[1][k] = -n_c_t_2;
         o->entry[2][k] = -n_c_t_3;
@@ -3099,7 +3150,7 @@ INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk, int *co
     deliver(Hk_of, 18, w, code, Hk);
 }
 
-/* ---- constraint_bias: 459 mul, 288 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraint_bias: 483 mul, 306 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3292,21 +3343,26 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3315,18 +3371,20 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
         /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z;
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = end_p1_r3_y*omega_tip_x*w_1_t_2 - end_p1_r3_x*omega_tip_y*w_1_t_2;
+        const real qd_1_t = end_p1_r3_y*omega_tip_x*w_1_t_4 - end_p1_r3_x*omega_tip_y*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         /* (upu-V21) angular velocity of link 1 */
         const real omega_1_t = qd_1*s_2;
@@ -3357,7 +3415,7 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -3403,7 +3461,7 @@ INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, cons
     deliver(constraint_bias_of, 3, w, code, bias);
 }
 
-/* ---- required: 933 mul, 696 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 957 mul, 714 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3705,24 +3763,29 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_2;
-        const real o_1_y = end_p1_r3_x*w_1_t_2;
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3731,18 +3794,20 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
         /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z;
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
         const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         /* (upu-V21) angular velocity of link 1 */
         const real omega_1_t = qd_1*s_2;
@@ -3778,21 +3843,21 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
         const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
         const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
         const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
         const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_y*end_p1_r3_y - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
         /* (upu-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -3805,13 +3870,13 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
             S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
         /* (upu-A10) acceleration of joint 1 */
-        const real qdd_1_t = o_1_x*(alpha_x*axis_x_x + alpha_y*axis_x_y + alpha_z*axis_x_z) -
-            o_1_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
-            alpha_z*axis_y_upu_axes2_z);
-        const real qdd_1_t_2 = S_ddot_x*axis_y_upu_axes2_x + S_ddot_y*axis_y_upu_axes2_y +
-            S_ddot_z*axis_y_upu_axes2_z - bias_t_2;
+        const real qdd_1_t = o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real qdd_1_t_2 = S_ddot_x*axis_y_upu_axes2_in_base_x +
+            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
         const real qdd_1_t_3 = inv_root_2*qdd_1_t_2;
-        const real qdd_1 = inv_w_1_t_14*rel_z + nu_1*w_1_t_2 - qdd_1_t;
+        const real qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t;
         /* (upu-A16) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_2;
         const real alpha_1_t_2 = c_2*qdd_1;
@@ -3823,7 +3888,8 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
         /* (upu-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x;
+        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
+            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
         const real acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y;
         const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
         /* (upu-N11) inertia force of link 3 less its weight */
@@ -3850,35 +3916,35 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = f_3_y + inv_root_2*mu_2_z;
-        const real G_t_2 = N_2_r0_y*inv_w_1_t_14;
+        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
         /* (upu-N46) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = -G_t*axis_y_upu_axes2_x - G_t_2*axis_z_upu_axes2_in_base_x -
-            axis_x_x*f_3_x;
-        const real c_in_base_y = -G_t*axis_y_upu_axes2_y - G_t_2*axis_z_upu_axes2_in_base_y -
-            axis_x_y*f_3_x;
-        const real c_in_base_z = -G_t*axis_y_upu_axes2_z - G_t_2*axis_z_upu_axes2_in_base_z -
-            axis_x_z*f_3_x;
+        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
+            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
+        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
+            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
+        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
+            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
         /* (upu-N42) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_m_t = N_2_r0_y*o_1_x;
         const real G_m_t_2 = N_2_r0_y*o_1_y;
         /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = G_m_t*axis_x_x + c_in_base_z*q_in_base_y - G_m_t_2*axis_y_upu_axes2_x -
-            c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = G_m_t*axis_x_y + c_in_base_x*q_in_base_z - G_m_t_2*axis_y_upu_axes2_y
-            - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = G_m_t*axis_x_z + c_in_base_y*q_in_base_x - G_m_t_2*axis_y_upu_axes2_z
-            - c_in_base_x*q_in_base_y;
+        const real R_a_t = G_m_t*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y -
+            G_m_t_2*axis_y_upu_axes2_in_base_x - c_in_base_y*q_in_base_z;
+        const real R_a_t_2 = G_m_t*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z -
+            G_m_t_2*axis_y_upu_axes2_in_base_y - c_in_base_z*q_in_base_x;
+        const real R_a_t_3 = G_m_t*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x -
+            G_m_t_2*axis_y_upu_axes2_in_base_z - c_in_base_x*q_in_base_y;
         o->sum[0][k] = c_in_base_x;  /* total_upu_x */
         o->sum[1][k] = c_in_base_y;  /* total_upu_y */
         o->sum[2][k] = c_in_base_z;  /* total_upu_z */
         o->sum[3][k] = R_a_t;  /* total_upu_x_2 */
         o->sum[4][k] = R_a_t_2;  /* total_upu_y_2 */
         o->sum[5][k] = R_a_t_3;  /* total_upu_z_2 */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = axis_x_z;
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
         o->entry[3][k] = H_a_3_t;
         o->entry[4][k] = H_a_3_t_2;
         o->entry[5][k] = H_a_3_t_3;
@@ -3891,7 +3957,7 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -4153,7 +4219,7 @@ INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, r
     deliver(q_of, 9, w, code, q);
 }
 
-/* ---- joint_rates: 351 mul, 219 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates: 375 mul, 237 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4345,35 +4411,42 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
         const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = end_p1_r3_y*w_1_t_2*(axis_x_x*omega_x + axis_x_y*omega_y +
-            axis_x_z*omega_z) - end_p1_r3_x*w_1_t_2*(axis_y_upu_axes2_x*omega_x +
-            axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z);
+        const real qd_1_t = end_p1_r3_y*w_1_t_4*(axis_x_upu_axes2_x*omega_x +
+            axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
+            end_p1_r3_x*w_1_t_4*(axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z);
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         o->entry[0][k] = qd_1;
         o->entry[1][k] = qd_1_t_2;
@@ -4381,7 +4454,7 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -4429,7 +4502,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 9, w, code, rates);
 }
 
-/* ---- joint_accelerations: 540 mul, 357 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 564 mul, 375 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4650,24 +4723,29 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_2;
-        const real o_1_y = end_p1_r3_x*w_1_t_2;
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -4676,18 +4754,20 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
         /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z;
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
         const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         /* (upu-V21) angular velocity of link 1 */
         const real omega_1_t = qd_1*s_2;
@@ -4717,25 +4797,25 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
         /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z +
-            root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t_2*qd_1_t_2);
+        const real rel_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
+            S_ddot_z*axis_x_upu_axes2_z + root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t_2*qd_1_t_2);
         const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
             S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
         /* (upu-A10) acceleration of joint 1 */
-        const real qdd_1_t = o_1_x*(alpha_x*axis_x_x + alpha_y*axis_x_y + alpha_z*axis_x_z) -
-            o_1_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
-            alpha_z*axis_y_upu_axes2_z);
-        const real qdd_1_t_2 = inv_root_2*(S_ddot_x*axis_y_upu_axes2_x +
-            S_ddot_y*axis_y_upu_axes2_y + S_ddot_z*axis_y_upu_axes2_z - bias_t*qd_1_t_2) +
-            omega_1_t*omega_1_t_2;
-        const real qdd_1 = inv_w_1_t_14*rel_z + nu_1*w_1_t_2 - qdd_1_t;
+        const real qdd_1_t = o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real qdd_1_t_2 = inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x +
+            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z -
+            bias_t*qd_1_t_2) + omega_1_t*omega_1_t_2;
+        const real qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t;
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = qdd_1_t_2;
         o->entry[2][k] = rel_x;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 
@@ -4956,7 +5036,7 @@ INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *re
     deliver(constraints_of, 3, w, code, residual);
 }
 
-/* ---- legs: 786 mul, 552 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -5192,24 +5272,29 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
            */
         const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
         /* (upu-V9) force part of reciprocal wrench 1 */
-        const real axis_x_x = S_x*inv_root_2;
-        const real axis_x_y = S_y*inv_root_2;
-        const real axis_x_z = S_z*inv_root_2;
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y -
-            axis_x_y*axis_z_upu_axes2_in_base_z;
-        const real axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z -
-            axis_x_z*axis_z_upu_axes2_in_base_x;
-        const real axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x -
-            axis_x_x*axis_z_upu_axes2_in_base_y;
-        const real w_1_t = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_14 = 1/w_1_t;
-        const real w_1_t_2 = inv_w_1_t_14*n_c_z;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
         /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_2;
-        const real o_1_y = end_p1_r3_x*w_1_t_2;
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -5218,18 +5303,20 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
         /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-            axis_y_upu_axes2_z*omega_z;
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
         const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
         /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y
-            + S_dot_z*axis_y_upu_axes2_z);
-        const real qd_1 = inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x +
+        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
             S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
         /* (upu-V21) angular velocity of link 1 */
         const real omega_1_t = qd_1*s_2;
@@ -5270,9 +5357,12 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
         const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_x*end_p1_r3_x - axis_x_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_y*end_p1_r3_x - axis_x_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_z*end_p1_r3_x - axis_x_z*end_p1_r3_y;
+        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y;
+        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y;
+        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y;
         /* (upu-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -5285,13 +5375,13 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
             S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
         /* (upu-A10) acceleration of joint 1 */
-        const real qdd_1_t = o_1_x*(alpha_x*axis_x_x + alpha_y*axis_x_y + alpha_z*axis_x_z) -
-            o_1_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
-            alpha_z*axis_y_upu_axes2_z);
-        const real qdd_1_t_2 = S_ddot_x*axis_y_upu_axes2_x + S_ddot_y*axis_y_upu_axes2_y +
-            S_ddot_z*axis_y_upu_axes2_z - bias_t_2;
+        const real qdd_1_t = o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+            alpha_z*axis_x_upu_axes2_z) - o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real qdd_1_t_2 = S_ddot_x*axis_y_upu_axes2_in_base_x +
+            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
         const real qdd_1_t_3 = inv_root_2*qdd_1_t_2;
-        const real qdd_1 = inv_w_1_t_14*rel_z + nu_1*w_1_t_2 - qdd_1_t;
+        const real qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t;
         /* (upu-A16) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_2;
         const real alpha_1_t_2 = c_2*qdd_1;
@@ -5303,7 +5393,8 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
         /* (upu-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x;
+        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
+            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
         const real acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y;
         const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
         /* (upu-N11) inertia force of link 3 less its weight */
@@ -5330,32 +5421,32 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = f_3_y + inv_root_2*mu_2_z;
-        const real G_t_2 = N_2_r0_y*inv_w_1_t_14;
+        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
         /* (upu-N46) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_in_base_x = -G_t*axis_y_upu_axes2_x - G_t_2*axis_z_upu_axes2_in_base_x -
-            axis_x_x*f_3_x;
-        const real c_in_base_y = -G_t*axis_y_upu_axes2_y - G_t_2*axis_z_upu_axes2_in_base_y -
-            axis_x_y*f_3_x;
-        const real c_in_base_z = -G_t*axis_y_upu_axes2_z - G_t_2*axis_z_upu_axes2_in_base_z -
-            axis_x_z*f_3_x;
+        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
+            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
+        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
+            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
+        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
+            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
         /* (upu-N42) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_m_t = N_2_r0_y*o_1_x;
         const real G_m_t_2 = N_2_r0_y*o_1_y;
         /* (upu-N51) moment of the leg on the platform without actuation */
-        const real c_m_in_base_x = G_m_t*axis_x_x - G_m_t_2*axis_y_upu_axes2_x;
-        const real c_m_in_base_y = G_m_t*axis_x_y - G_m_t_2*axis_y_upu_axes2_y;
-        const real c_m_in_base_z = G_m_t*axis_x_z - G_m_t_2*axis_y_upu_axes2_z;
+        const real c_m_in_base_x = G_m_t*axis_x_upu_axes2_x - G_m_t_2*axis_y_upu_axes2_in_base_x;
+        const real c_m_in_base_y = G_m_t*axis_x_upu_axes2_y - G_m_t_2*axis_y_upu_axes2_in_base_y;
+        const real c_m_in_base_z = G_m_t*axis_x_upu_axes2_z - G_m_t_2*axis_y_upu_axes2_in_base_z;
         o->entry[0][k] = c_in_base_x;
         o->entry[1][k] = c_in_base_y;
         o->entry[2][k] = c_in_base_z;
         o->entry[3][k] = c_m_in_base_x;
         o->entry[4][k] = c_m_in_base_y;
         o->entry[5][k] = c_m_in_base_z;
-        o->entry[6][k] = axis_x_x;
-        o->entry[7][k] = axis_x_y;
-        o->entry[8][k] = axis_x_z;
+        o->entry[6][k] = axis_x_upu_axes2_x;
+        o->entry[7][k] = axis_x_upu_axes2_y;
+        o->entry[8][k] = axis_x_upu_axes2_z;
         o->entry[9][k] = -n_c_t;
         o->entry[10][k] = -n_c_t_2;
         o->entry[11][k] = -n_c_t_3;
@@ -5365,7 +5456,7 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t) > TOLERANCE*size_);
+            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
 

@@ -110,32 +110,32 @@ extern const tripod_3upu_real tripod_3upu_HOME_Q[TRIPOD_3UPU_NJ];
    model is all NaN. */
 int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *model);
 
-/* Inertia matrix M. 1626 mul, 1047 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1650 mul, 1065 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3upu_M(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *M);
 size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 804 mul, 588 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 828 mul, 606 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int tripod_3upu_Z(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *Z);
 size_t tripod_3upu_Z_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     const tripod_3upu_real *V, tripod_3upu_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 93 mul, 69 add, 3 div, 3 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 168 mul, 105 add, 6 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int tripod_3upu_H(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *H);
 size_t tripod_3upu_H_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *H, int *status);
 
-/* Directions Hk of the constraint forces lambda. 309 mul, 189 add, 9 div, 6 sqrt, 0 trig. In: X
+/* Directions Hk of the constraint forces lambda. 333 mul, 207 add, 9 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: Hk (NV x NC). */
 int tripod_3upu_Hk(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real
     *Hk);
 size_t tripod_3upu_Hk_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 2211 mul, 1503 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 2235 mul, 1521 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3upu_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H);
@@ -150,7 +150,7 @@ int tripod_3upu_constraints(const tripod_3upu_model *model, const tripod_3upu_re
 size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 459 mul, 288 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 483 mul, 306 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int tripod_3upu_constraint_bias(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *bias);
@@ -164,14 +164,14 @@ int tripod_3upu_inverse_kinematics(const tripod_3upu_model *model, const tripod_
 size_t tripod_3upu_inverse_kinematics_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *q, int *status);
 
-/* Rates of all joints. 351 mul, 219 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 375 mul, 237 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3upu_joint_rates(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *rates);
 size_t tripod_3upu_joint_rates_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status);
 
-/* Accelerations of all joints. 540 mul, 357 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 564 mul, 375 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3upu_joint_accelerations(const tripod_3upu_model *model, const tripod_3upu_real *X,
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations);
@@ -179,7 +179,7 @@ size_t tripod_3upu_joint_accelerations_batch(const tripod_3upu_model *model, siz
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real
     *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 933 mul, 696 add,
+/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 957 mul, 714 add,
    12 div, 6 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
    wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int tripod_3upu_inverse_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
@@ -189,7 +189,7 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, const
     tripod_3upu_real *wrench, tripod_3upu_real *tau, tripod_3upu_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2211 mul, 1503 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 2235 mul, 1521 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tripod_3upu_forward_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
@@ -207,7 +207,7 @@ size_t tripod_3upu_complete_acceleration_batch(const tripod_3upu_model *model, s
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real
     *completed, int *status);
 
-/* Force, then moment, of each leg on the platform at its platform joint, base axes. 786 mul, 552
+/* Force, then moment, of each leg on the platform at its platform joint, base axes. 810 mul, 570
    add, 12 div, 6 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: forces (3 x 6). */
 int tripod_3upu_leg_reactions(const tripod_3upu_model *model, const tripod_3upu_real *X, const

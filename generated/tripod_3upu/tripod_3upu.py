@@ -258,6 +258,7 @@ _BRANCHES = {  # assembly branch of home, a sign per leg
 def _prepare(p):
     """Values that depend on the parameters alone."""
     sqrt = np.sqrt
+    _upu = (len(_LEGS["upu"]),)
     gravity_x = p.gravity[0]
     gravity_y = p.gravity[1]
     gravity_z = p.gravity[2]
@@ -450,52 +451,52 @@ def _prepare(p):
     }
     legs = {
         "upu": {
-            "J_group_2_xx": np.broadcast_to(J_group_2_xx, (3,)),
-            "J_group_2_xy": np.broadcast_to(J_group_2_xy, (3,)),
-            "J_group_2_xz": np.broadcast_to(J_group_2_xz, (3,)),
-            "J_group_2_yy": np.broadcast_to(J_group_2_yy, (3,)),
-            "J_group_2_yz": np.broadcast_to(J_group_2_yz, (3,)),
-            "J_group_2_zz": np.broadcast_to(J_group_2_zz, (3,)),
-            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, (3,)),
-            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, (3,)),
-            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, (3,)),
-            "b_r0_x": np.broadcast_to(b_r0_x, (3,)),
-            "b_r0_y": np.broadcast_to(b_r0_y, (3,)),
-            "b_r0_z": np.broadcast_to(b_r0_z, (3,)),
-            "branch_1": np.broadcast_to(branch_1, (3,)),
-            "branch_2": np.broadcast_to(branch_2, (3,)),
-            "g_r0_x": np.broadcast_to(g_r0_x, (3,)),
-            "g_r0_y": np.broadcast_to(g_r0_y, (3,)),
-            "g_r0_z": np.broadcast_to(g_r0_z, (3,)),
-            "h_2_x": np.broadcast_to(h_2_x, (3,)),
-            "h_2_y": np.broadcast_to(h_2_y, (3,)),
-            "h_2_z": np.broadcast_to(h_2_z, (3,)),
-            "h_3_x": np.broadcast_to(h_3_x, (3,)),
-            "h_3_y": np.broadcast_to(h_3_y, (3,)),
-            "h_3_z": np.broadcast_to(h_3_z, (3,)),
-            "size": np.broadcast_to(size, (3,)),
-            "size_t_3": np.broadcast_to(size_t_3, (3,)),
-            "upu_base_frame_xx": np.broadcast_to(upu_base_frame_xx, (3,)),
-            "upu_base_frame_xy": np.broadcast_to(upu_base_frame_xy, (3,)),
-            "upu_base_frame_xz": np.broadcast_to(upu_base_frame_xz, (3,)),
-            "upu_base_frame_yx": np.broadcast_to(upu_base_frame_yx, (3,)),
-            "upu_base_frame_yy": np.broadcast_to(upu_base_frame_yy, (3,)),
-            "upu_base_frame_yz": np.broadcast_to(upu_base_frame_yz, (3,)),
-            "upu_base_frame_zx": np.broadcast_to(upu_base_frame_zx, (3,)),
-            "upu_base_frame_zy": np.broadcast_to(upu_base_frame_zy, (3,)),
-            "upu_base_frame_zz": np.broadcast_to(upu_base_frame_zz, (3,)),
-            "upu_base_point_x": np.broadcast_to(upu_base_point_x, (3,)),
-            "upu_base_point_y": np.broadcast_to(upu_base_point_y, (3,)),
-            "upu_base_point_z": np.broadcast_to(upu_base_point_z, (3,)),
-            "upu_link2_mass": np.broadcast_to(upu_link2_mass, (3,)),
-            "upu_link3_mass": np.broadcast_to(upu_link3_mass, (3,)),
-            "upu_platform_joint_axis_platform_x": np.broadcast_to(upu_platform_joint_axis_platform_x, (3,)),
-            "upu_platform_joint_axis_platform_y": np.broadcast_to(upu_platform_joint_axis_platform_y, (3,)),
-            "upu_platform_joint_axis_platform_z": np.broadcast_to(upu_platform_joint_axis_platform_z, (3,)),
-            "upu_platform_point_x": np.broadcast_to(upu_platform_point_x, (3,)),
-            "upu_platform_point_y": np.broadcast_to(upu_platform_point_y, (3,)),
-            "upu_platform_point_z": np.broadcast_to(upu_platform_point_z, (3,)),
-            "volume_c_t": np.broadcast_to(volume_c_t, (3,)),
+            "J_group_2_xx": np.broadcast_to(J_group_2_xx, _upu),
+            "J_group_2_xy": np.broadcast_to(J_group_2_xy, _upu),
+            "J_group_2_xz": np.broadcast_to(J_group_2_xz, _upu),
+            "J_group_2_yy": np.broadcast_to(J_group_2_yy, _upu),
+            "J_group_2_yz": np.broadcast_to(J_group_2_yz, _upu),
+            "J_group_2_zz": np.broadcast_to(J_group_2_zz, _upu),
+            "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _upu),
+            "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _upu),
+            "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _upu),
+            "b_r0_x": np.broadcast_to(b_r0_x, _upu),
+            "b_r0_y": np.broadcast_to(b_r0_y, _upu),
+            "b_r0_z": np.broadcast_to(b_r0_z, _upu),
+            "branch_1": np.broadcast_to(branch_1, _upu),
+            "branch_2": np.broadcast_to(branch_2, _upu),
+            "g_r0_x": np.broadcast_to(g_r0_x, _upu),
+            "g_r0_y": np.broadcast_to(g_r0_y, _upu),
+            "g_r0_z": np.broadcast_to(g_r0_z, _upu),
+            "h_2_x": np.broadcast_to(h_2_x, _upu),
+            "h_2_y": np.broadcast_to(h_2_y, _upu),
+            "h_2_z": np.broadcast_to(h_2_z, _upu),
+            "h_3_x": np.broadcast_to(h_3_x, _upu),
+            "h_3_y": np.broadcast_to(h_3_y, _upu),
+            "h_3_z": np.broadcast_to(h_3_z, _upu),
+            "size": np.broadcast_to(size, _upu),
+            "size_t_3": np.broadcast_to(size_t_3, _upu),
+            "upu_base_frame_xx": np.broadcast_to(upu_base_frame_xx, _upu),
+            "upu_base_frame_xy": np.broadcast_to(upu_base_frame_xy, _upu),
+            "upu_base_frame_xz": np.broadcast_to(upu_base_frame_xz, _upu),
+            "upu_base_frame_yx": np.broadcast_to(upu_base_frame_yx, _upu),
+            "upu_base_frame_yy": np.broadcast_to(upu_base_frame_yy, _upu),
+            "upu_base_frame_yz": np.broadcast_to(upu_base_frame_yz, _upu),
+            "upu_base_frame_zx": np.broadcast_to(upu_base_frame_zx, _upu),
+            "upu_base_frame_zy": np.broadcast_to(upu_base_frame_zy, _upu),
+            "upu_base_frame_zz": np.broadcast_to(upu_base_frame_zz, _upu),
+            "upu_base_point_x": np.broadcast_to(upu_base_point_x, _upu),
+            "upu_base_point_y": np.broadcast_to(upu_base_point_y, _upu),
+            "upu_base_point_z": np.broadcast_to(upu_base_point_z, _upu),
+            "upu_link2_mass": np.broadcast_to(upu_link2_mass, _upu),
+            "upu_link3_mass": np.broadcast_to(upu_link3_mass, _upu),
+            "upu_platform_joint_axis_platform_x": np.broadcast_to(upu_platform_joint_axis_platform_x, _upu),
+            "upu_platform_joint_axis_platform_y": np.broadcast_to(upu_platform_joint_axis_platform_y, _upu),
+            "upu_platform_joint_axis_platform_z": np.broadcast_to(upu_platform_joint_axis_platform_z, _upu),
+            "upu_platform_point_x": np.broadcast_to(upu_platform_point_x, _upu),
+            "upu_platform_point_y": np.broadcast_to(upu_platform_point_y, _upu),
+            "upu_platform_point_z": np.broadcast_to(upu_platform_point_z, _upu),
+            "volume_c_t": np.broadcast_to(volume_c_t, _upu),
         },
     }
     return shared, legs
@@ -649,7 +650,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 2211 mul, 1503 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 2235 mul, 1521 add, 12 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -841,21 +842,38 @@ def _dynamics_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_w_1_t_14*s_2
-    d_alpha_1_t_2 = c_2*inv_w_1_t_14
+    d_alpha_1_t = inv_w_1_t_25*s_2
+    d_alpha_1_t_2 = c_2*inv_w_1_t_25
     # (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
     d_acc_3_t = d_alpha_1_t_2*root_2
     # (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -879,37 +897,46 @@ def _dynamics_upu(c, k, x, s, f):
         upu_link3_mass
     )
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_Gamma_1_z*inv_w_1_t_14 - upu_link3_mass
+    Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass
     Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = Q_t_2*axis_y_upu_axes2_x + axis_x_x*d_phi_3_t + axis_z_upu_axes2_in_base_x*d_G_t
-    Q_t_6 = Q_t_2*axis_y_upu_axes2_y + axis_x_y*d_phi_3_t + axis_z_upu_axes2_in_base_y*d_G_t
-    Q_t_7 = Q_t_2*axis_y_upu_axes2_z + axis_x_z*d_phi_3_t + axis_z_upu_axes2_in_base_z*d_G_t
-    Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_x*d_phi_3_t_2
-    Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_y*d_phi_3_t_2
-    Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_z*d_phi_3_t_2
-    Q_t_11 = Q_t_5*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_x
+    Q_t_5 = (
+    Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
+        axis_z_upu_axes2_in_base_x*d_G_t
+    )
+    Q_t_6 = (
+    Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
+        axis_z_upu_axes2_in_base_y*d_G_t
+    )
+    Q_t_7 = (
+    Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
+        axis_z_upu_axes2_in_base_z*d_G_t
+    )
+    Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2
+    Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2
+    Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2
+    Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x
     Q_t_12 = 2.0*Q_t_11 + upu_link3_mass
     Q_t_13 = (
-    Q_t_5*axis_y_upu_axes2_y + Q_t_6*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_y +
-        Q_t_9*axis_z_upu_axes2_in_base_x
+    Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
+        Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x
     )
     Q_t_14 = (
-    Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_z + Q_t_7*axis_y_upu_axes2_x +
-        Q_t_8*axis_z_upu_axes2_in_base_z
+    Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
+        Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z
     )
-    Q_t_15 = Q_t_6*axis_y_upu_axes2_y + Q_t_9*axis_z_upu_axes2_in_base_y
+    Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y
     Q_t_16 = 2.0*Q_t_15 + upu_link3_mass
     Q_t_17 = (
-    Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_z + Q_t_7*axis_y_upu_axes2_y +
-        Q_t_9*axis_z_upu_axes2_in_base_z
+    Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
+        Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z
     )
-    Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_z
+    Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
     Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
     # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_2
-    o_1_y = end_p1_r3_x*w_1_t_2
-    o_1_y_2 = w_1_t_2*(c_2*end_p1_r3_y - end_p1_r3_x*s_2)
-    o_1_z = n_m1_r0_y*w_1_t_2
+    o_1_x = end_p1_r3_y*w_1_t_4
+    o_1_y = end_p1_r3_x*w_1_t_4
+    o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2)
+    o_1_z = n_m1_r0_y*w_1_t_4
     # (upu-A17) coefficient of the acceleration in: angular acceleration of link 1
     d0_alpha_1_t = o_1_y_2*s_2
     d0_alpha_1_t_2 = c_2*o_1_y_2
@@ -937,8 +964,8 @@ def _dynamics_upu(c, k, x, s, f):
         d0_acc_3_t_2*upu_link3_mass))
     )
     # (upu-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d0_G_t = d0_Gamma_1_x*inv_w_1_t_14
-    d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_14
+    d0_G_t = d0_Gamma_1_x*inv_w_1_t_25
+    d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25
     d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2)
     d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2)
     # (M2) coupling block of M
@@ -1134,9 +1161,12 @@ def _dynamics_upu(c, k, x, s, f):
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
     # (upu-V18) rate of joint 1
-    omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z
+    omega_tip_x = (
+    axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+    )
     omega_tip_y = (
-    axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+    axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z
     )
     omega_tip_z = (
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
@@ -1144,14 +1174,16 @@ def _dynamics_upu(c, k, x, s, f):
     )
     qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
     # (upu-V21) angular velocity of link 1
@@ -1191,10 +1223,11 @@ def _dynamics_upu(c, k, x, s, f):
     )
     # (upu-A11) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o_t = (
-    axis_y_upu_axes2_x*u_1_x + axis_y_upu_axes2_y*u_1_y + axis_y_upu_axes2_z*u_1_z - bias_t_2
+    axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y +
+        axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
     )
     qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-    qdd_1_o = inv_w_1_t_14*rel_o_z + nu_1*w_1_t_2
+    qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4
     # (upu-A19) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o
@@ -1210,7 +1243,9 @@ def _dynamics_upu(c, k, x, s, f):
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
     g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
+    acc_3_o_x = (
+    axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y + axis_x_upu_axes2_z*u_1_z - g_r3_x
+    )
     acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y
     acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x
     # (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight
@@ -1242,57 +1277,67 @@ def _dynamics_upu(c, k, x, s, f):
     N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2
     # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
-    G_o_t_2 = N_2_o_r0_y*inv_w_1_t_14
+    G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
     # (upu-N55) velocity and gravity terms of the leg force
-    U_in_base_x = G_o_t*axis_y_upu_axes2_x + G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_x*f_3_o_x
-    U_in_base_y = G_o_t*axis_y_upu_axes2_y + G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_y*f_3_o_x
-    U_in_base_z = G_o_t*axis_y_upu_axes2_z + G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_z*f_3_o_x
+    U_in_base_x = (
+    G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
+        axis_x_upu_axes2_x*f_3_o_x
+    )
+    U_in_base_y = (
+    G_o_t*axis_y_upu_axes2_in_base_y + G_o_t_2*axis_z_upu_axes2_in_base_y +
+        axis_x_upu_axes2_y*f_3_o_x
+    )
+    U_in_base_z = (
+    G_o_t*axis_y_upu_axes2_in_base_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
+        axis_x_upu_axes2_z*f_3_o_x
+    )
     # (upu-N45) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
     G_m_o_t = N_2_o_r0_y*o_1_x
     G_m_o_t_2 = N_2_o_r0_y*o_1_y
     # (M7) rotational part of Z
     Z_a_t = (
-    G_m_o_t_2*axis_y_upu_axes2_x + U_in_base_z*q_in_base_y - G_m_o_t*axis_x_x -
+    G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_t*axis_x_upu_axes2_x -
         U_in_base_y*q_in_base_z
     )
     Z_a_t_2 = (
-    G_m_o_t_2*axis_y_upu_axes2_y + U_in_base_x*q_in_base_z - G_m_o_t*axis_x_y -
+    G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_t*axis_x_upu_axes2_y -
         U_in_base_z*q_in_base_x
     )
     Z_a_t_3 = (
-    G_m_o_t_2*axis_y_upu_axes2_z + U_in_base_y*q_in_base_x - G_m_o_t*axis_x_z -
+    G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_t*axis_x_upu_axes2_z -
         U_in_base_x*q_in_base_y
     )
     # (M8) moment of the column's unit force about the platform origin
-    H_a_3_t = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_t_2 = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_t_3 = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
+    H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
+    H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
     n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
     n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    axis_y_upu_axes2_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_x*end_p1_r3_y -
-        n_c_t_3*q_in_base_y
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
+        - n_c_t_3*q_in_base_y
     )
     Hk_a_1_y = (
-    axis_y_upu_axes2_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_y*end_p1_r3_y -
-        n_c_t*q_in_base_z
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
+        - n_c_t*q_in_base_z
     )
     Hk_a_1_z = (
-    axis_y_upu_axes2_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_z*end_p1_r3_y -
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y -
         n_c_t_2*q_in_base_x
     )
     # (M11) part of the constraint's second derivative that does not hold the acceleration
     gamma_c1 = nu_1 - n_c_z*rel_o_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
         M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t,
-        Z_a_t_2, Z_a_t_3,), (axis_x_x, axis_x_y, axis_x_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c_t,
-        -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z, gamma_c1,),
+        Z_a_t_2, Z_a_t_3,), (axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t,
+        H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
+        gamma_c1,),
     )
 
 
@@ -1347,7 +1392,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 1626 mul, 1047 add, 12 div, 6 sqrt, 0 trig
+# M: 1650 mul, 1065 add, 12 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1497,21 +1542,38 @@ def _M_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_w_1_t_14*s_2
-    d_alpha_1_t_2 = c_2*inv_w_1_t_14
+    d_alpha_1_t = inv_w_1_t_25*s_2
+    d_alpha_1_t_2 = c_2*inv_w_1_t_25
     # (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
     d_acc_3_t = d_alpha_1_t_2*root_2
     # (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
@@ -1535,37 +1597,46 @@ def _M_upu(c, k, x, s, f):
         upu_link3_mass
     )
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_Gamma_1_z*inv_w_1_t_14 - upu_link3_mass
+    Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass
     Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = Q_t_2*axis_y_upu_axes2_x + axis_x_x*d_phi_3_t + axis_z_upu_axes2_in_base_x*d_G_t
-    Q_t_6 = Q_t_2*axis_y_upu_axes2_y + axis_x_y*d_phi_3_t + axis_z_upu_axes2_in_base_y*d_G_t
-    Q_t_7 = Q_t_2*axis_y_upu_axes2_z + axis_x_z*d_phi_3_t + axis_z_upu_axes2_in_base_z*d_G_t
-    Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_x*d_phi_3_t_2
-    Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_y*d_phi_3_t_2
-    Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_z*d_phi_3_t_2
-    Q_t_11 = Q_t_5*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_x
+    Q_t_5 = (
+    Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
+        axis_z_upu_axes2_in_base_x*d_G_t
+    )
+    Q_t_6 = (
+    Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
+        axis_z_upu_axes2_in_base_y*d_G_t
+    )
+    Q_t_7 = (
+    Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
+        axis_z_upu_axes2_in_base_z*d_G_t
+    )
+    Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2
+    Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2
+    Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2
+    Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x
     Q_t_12 = 2.0*Q_t_11 + upu_link3_mass
     Q_t_13 = (
-    Q_t_5*axis_y_upu_axes2_y + Q_t_6*axis_y_upu_axes2_x + Q_t_8*axis_z_upu_axes2_in_base_y +
-        Q_t_9*axis_z_upu_axes2_in_base_x
+    Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
+        Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x
     )
     Q_t_14 = (
-    Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_z + Q_t_7*axis_y_upu_axes2_x +
-        Q_t_8*axis_z_upu_axes2_in_base_z
+    Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
+        Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z
     )
-    Q_t_15 = Q_t_6*axis_y_upu_axes2_y + Q_t_9*axis_z_upu_axes2_in_base_y
+    Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y
     Q_t_16 = 2.0*Q_t_15 + upu_link3_mass
     Q_t_17 = (
-    Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_z + Q_t_7*axis_y_upu_axes2_y +
-        Q_t_9*axis_z_upu_axes2_in_base_z
+    Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
+        Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z
     )
-    Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_z
+    Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
     Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
     # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_2
-    o_1_y = end_p1_r3_x*w_1_t_2
-    o_1_y_2 = w_1_t_2*(c_2*end_p1_r3_y - end_p1_r3_x*s_2)
-    o_1_z = n_m1_r0_y*w_1_t_2
+    o_1_x = end_p1_r3_y*w_1_t_4
+    o_1_y = end_p1_r3_x*w_1_t_4
+    o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2)
+    o_1_z = n_m1_r0_y*w_1_t_4
     # (upu-A17) coefficient of the acceleration in: angular acceleration of link 1
     d0_alpha_1_t = o_1_y_2*s_2
     d0_alpha_1_t_2 = c_2*o_1_y_2
@@ -1593,8 +1664,8 @@ def _M_upu(c, k, x, s, f):
         d0_acc_3_t_2*upu_link3_mass))
     )
     # (upu-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d0_G_t = d0_Gamma_1_x*inv_w_1_t_14
-    d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_14
+    d0_G_t = d0_Gamma_1_x*inv_w_1_t_25
+    d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25
     d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2)
     d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2)
     # (M2) coupling block of M
@@ -1782,7 +1853,7 @@ def _M_upu(c, k, x, s, f):
         _z_5*q_in_base_x - q_in_base_x*(_z_7*upu_base_frame_yx + _z_8*upu_base_frame_yy +
         _z_9*upu_base_frame_yz)
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
@@ -1830,7 +1901,7 @@ def _M_after(c, s, t, f):
     )
 
 
-# Z: 804 mul, 588 add, 12 div, 6 sqrt, 0 trig
+# Z: 828 mul, 606 add, 12 div, 6 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
@@ -2005,21 +2076,38 @@ def _Z_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_2
-    o_1_y = end_p1_r3_x*w_1_t_2
+    o_1_x = end_p1_r3_y*w_1_t_4
+    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2028,9 +2116,12 @@ def _Z_upu(c, k, x, s, f):
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
     # (upu-V18) rate of joint 1
-    omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z
+    omega_tip_x = (
+    axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+    )
     omega_tip_y = (
-    axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+    axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z
     )
     omega_tip_z = (
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
@@ -2038,14 +2129,16 @@ def _Z_upu(c, k, x, s, f):
     )
     qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
     # (upu-V21) angular velocity of link 1
@@ -2085,10 +2178,11 @@ def _Z_upu(c, k, x, s, f):
     )
     # (upu-A11) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o_t = (
-    axis_y_upu_axes2_x*u_1_x + axis_y_upu_axes2_y*u_1_y + axis_y_upu_axes2_z*u_1_z - bias_t_2
+    axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y +
+        axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
     )
     qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-    qdd_1_o = inv_w_1_t_14*rel_o_z + nu_1*w_1_t_2
+    qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4
     # (upu-A19) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o
@@ -2104,7 +2198,9 @@ def _Z_upu(c, k, x, s, f):
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
     g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    acc_3_o_x = axis_x_x*u_1_x + axis_x_y*u_1_y + axis_x_z*u_1_z - g_r3_x
+    acc_3_o_x = (
+    axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y + axis_x_upu_axes2_z*u_1_z - g_r3_x
+    )
     acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y
     acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x
     # (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight
@@ -2136,28 +2232,37 @@ def _Z_upu(c, k, x, s, f):
     N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2
     # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
-    G_o_t_2 = N_2_o_r0_y*inv_w_1_t_14
+    G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
     # (upu-N55) velocity and gravity terms of the leg force
-    U_in_base_x = G_o_t*axis_y_upu_axes2_x + G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_x*f_3_o_x
-    U_in_base_y = G_o_t*axis_y_upu_axes2_y + G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_y*f_3_o_x
-    U_in_base_z = G_o_t*axis_y_upu_axes2_z + G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_z*f_3_o_x
+    U_in_base_x = (
+    G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
+        axis_x_upu_axes2_x*f_3_o_x
+    )
+    U_in_base_y = (
+    G_o_t*axis_y_upu_axes2_in_base_y + G_o_t_2*axis_z_upu_axes2_in_base_y +
+        axis_x_upu_axes2_y*f_3_o_x
+    )
+    U_in_base_z = (
+    G_o_t*axis_y_upu_axes2_in_base_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
+        axis_x_upu_axes2_z*f_3_o_x
+    )
     # (upu-N45) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
     G_m_o_t = N_2_o_r0_y*o_1_x
     G_m_o_t_2 = N_2_o_r0_y*o_1_y
     # (M7) rotational part of Z
     Z_a_t = (
-    G_m_o_t_2*axis_y_upu_axes2_x + U_in_base_z*q_in_base_y - G_m_o_t*axis_x_x -
+    G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_t*axis_x_upu_axes2_x -
         U_in_base_y*q_in_base_z
     )
     Z_a_t_2 = (
-    G_m_o_t_2*axis_y_upu_axes2_y + U_in_base_x*q_in_base_z - G_m_o_t*axis_x_y -
+    G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_t*axis_x_upu_axes2_y -
         U_in_base_z*q_in_base_x
     )
     Z_a_t_3 = (
-    G_m_o_t_2*axis_y_upu_axes2_z + U_in_base_y*q_in_base_x - G_m_o_t*axis_x_z -
+    G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_t*axis_x_upu_axes2_z -
         U_in_base_x*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
 
 
@@ -2176,7 +2281,7 @@ def _Z_after(c, s, t, f):
     return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
 
 
-# H: 93 mul, 69 add, 3 div, 3 sqrt, 0 trig
+# H: 168 mul, 105 add, 6 div, 6 sqrt, 0 trig
 def _H_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2219,7 +2324,7 @@ def _H_before(c, X, f):
 def _H_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
         upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
         upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
         upu_base_point_z, upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
@@ -2244,6 +2349,8 @@ def _H_upu(c, k, x, s, f):
     py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy
     # (upu-K4) squared amplitude
     rho2_1 = px_1*px_1 + py_1*py_1
+    # (upu-K5) amplitude, with the sign of the branch
+    root_1 = branch_1*sqrt(rho2_1)
     # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
     xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
     # (upu-K13) squared amplitude
@@ -2252,19 +2359,53 @@ def _H_upu(c, k, x, s, f):
     root_2 = branch_2*sqrt(rho2_2)
     # (upu-K15) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
+    c_2 = inv_root_2*root_1
+    # (upu-K16) sine of the angle of joint 2 from its reference direction
+    s_2 = inv_root_2*xi_1_t
+    # (upu-K6) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
+    c_1 = inv_root_1*py_1
+    # (upu-K7) sine of the angle of joint 1 from its reference direction
+    s_1 = inv_root_1*px_1
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
+    axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
+    axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
+    axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
     # (M8) moment of the column's unit force about the platform origin
-    H_a_3_t = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_t_2 = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_t_3 = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
+    H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
+    H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_2) > _TOLERANCE * size)
-    return (ok, (), (axis_x_x, axis_x_y, axis_x_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3,),)
+    return (
+    ok, (), (axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t, H_a_3_t_2,
+        H_a_3_t_3,),
+    )
 
 
-# Hk: 309 mul, 189 add, 9 div, 6 sqrt, 0 trig
+# Hk: 333 mul, 207 add, 9 div, 6 sqrt, 0 trig
 def _Hk_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2383,34 +2524,45 @@ def _Hk_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
     n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
     n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    end_p1_r3_x*(axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z) +
-        n_c_t_2*q_in_base_z - axis_x_x*end_p1_r3_y - n_c_t_3*q_in_base_y
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+        end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y
     )
     Hk_a_1_y = (
-    end_p1_r3_x*(axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x) +
-        n_c_t_3*q_in_base_x - axis_x_y*end_p1_r3_y - n_c_t*q_in_base_z
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+        end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z
     )
     Hk_a_1_z = (
-    end_p1_r3_x*(axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y) +
-        n_c_t*q_in_base_y - axis_x_z*end_p1_r3_y - n_c_t_2*q_in_base_x
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+        end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x
     )
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size)
     return (ok, (), (-n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),)
 
 
-# constraint_bias: 459 mul, 288 add, 12 div, 6 sqrt, 0 trig
+# constraint_bias: 483 mul, 306 add, 12 div, 6 sqrt, 0 trig
 def _constraint_bias_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2551,18 +2703,35 @@ def _constraint_bias_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2571,24 +2740,29 @@ def _constraint_bias_upu(c, k, x, s, f):
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
     # (upu-V18) rate of joint 1
-    omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z
+    omega_tip_x = (
+    axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+    )
     omega_tip_y = (
-    axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+    axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z
     )
     omega_tip_z = (
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = end_p1_r3_y*omega_tip_x*w_1_t_2 - end_p1_r3_x*omega_tip_y*w_1_t_2
+    qd_1_t = end_p1_r3_y*omega_tip_x*w_1_t_4 - end_p1_r3_x*omega_tip_y*w_1_t_4
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
     # (upu-V21) angular velocity of link 1
@@ -2616,11 +2790,11 @@ def _constraint_bias_upu(c, k, x, s, f):
     )
     # (M11) part of the constraint's second derivative that does not hold the acceleration
     gamma_c1 = nu_1 - n_c_z*rel_o_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (gamma_c1,),)
 
 
-# required: 933 mul, 696 add, 12 div, 6 sqrt, 0 trig
+# required: 957 mul, 714 add, 12 div, 6 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
@@ -2840,21 +3014,38 @@ def _required_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_2
-    o_1_y = end_p1_r3_x*w_1_t_2
+    o_1_x = end_p1_r3_y*w_1_t_4
+    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2863,9 +3054,12 @@ def _required_upu(c, k, x, s, f):
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
     # (upu-V18) rate of joint 1
-    omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z
+    omega_tip_x = (
+    axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+    )
     omega_tip_y = (
-    axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+    axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z
     )
     omega_tip_z = (
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
@@ -2873,14 +3067,16 @@ def _required_upu(c, k, x, s, f):
     )
     qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
     # (upu-V21) angular velocity of link 1
@@ -2915,24 +3111,24 @@ def _required_upu(c, k, x, s, f):
     g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
     g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
     # (M8) moment of the column's unit force about the platform origin
-    H_a_3_t = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z
-    H_a_3_t_2 = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x
-    H_a_3_t_3 = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
+    H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
+    H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
     n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
     n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    axis_y_upu_axes2_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_x*end_p1_r3_y -
-        n_c_t_3*q_in_base_y
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
+        - n_c_t_3*q_in_base_y
     )
     Hk_a_1_y = (
-    axis_y_upu_axes2_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_y*end_p1_r3_y -
-        n_c_t*q_in_base_z
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
+        - n_c_t*q_in_base_z
     )
     Hk_a_1_z = (
-    axis_y_upu_axes2_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_z*end_p1_r3_y -
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y -
         n_c_t_2*q_in_base_x
     )
     # (upu-A2) acceleration of the connection point without its centripetal part
@@ -2950,16 +3146,16 @@ def _required_upu(c, k, x, s, f):
     )
     # (upu-A10) acceleration of joint 1
     qdd_1_t = (
-    o_1_x*(alpha_x*axis_x_x + alpha_y*axis_x_y + alpha_z*axis_x_z) -
-        o_1_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
-        alpha_z*axis_y_upu_axes2_z)
+    o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
+        o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x + alpha_y*axis_y_upu_axes2_in_base_y +
+        alpha_z*axis_y_upu_axes2_in_base_z)
     )
     qdd_1_t_2 = (
-    S_ddot_x*axis_y_upu_axes2_x + S_ddot_y*axis_y_upu_axes2_y + S_ddot_z*axis_y_upu_axes2_z -
-        bias_t_2
+    S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
+        S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
     )
     qdd_1_t_3 = inv_root_2*qdd_1_t_2
-    qdd_1 = inv_w_1_t_14*rel_z + nu_1*w_1_t_2 - qdd_1_t
+    qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t
     # (upu-A16) angular acceleration of link 1
     alpha_1_t = qdd_1*s_2
     alpha_1_t_2 = c_2*qdd_1
@@ -2971,7 +3167,10 @@ def _required_upu(c, k, x, s, f):
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x - zeta_2_x
     # (upu-N3) acceleration of the reference point of link 3, less gravity
-    acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
+    acc_3_x = (
+    S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z -
+        g_r3_x
+    )
     acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y
     acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x
     # (upu-N11) inertia force of link 3 less its weight
@@ -2998,32 +3197,38 @@ def _required_upu(c, k, x, s, f):
     N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2
     # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_3_y + inv_root_2*mu_2_z
-    G_t_2 = N_2_r0_y*inv_w_1_t_14
+    G_t_2 = N_2_r0_y*inv_w_1_t_25
     # (upu-N46) leg force on the platform without actuation and without the mass at the connection point
-    c_in_base_x = -G_t*axis_y_upu_axes2_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_x*f_3_x
-    c_in_base_y = -G_t*axis_y_upu_axes2_y - G_t_2*axis_z_upu_axes2_in_base_y - axis_x_y*f_3_x
-    c_in_base_z = -G_t*axis_y_upu_axes2_z - G_t_2*axis_z_upu_axes2_in_base_z - axis_x_z*f_3_x
+    c_in_base_x = (
+    -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x
+    )
+    c_in_base_y = (
+    -G_t*axis_y_upu_axes2_in_base_y - G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x
+    )
+    c_in_base_z = (
+    -G_t*axis_y_upu_axes2_in_base_z - G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x
+    )
     # (upu-N42) moment at the connection point that balances the leg's inertia and weight along all freedoms
     G_m_t = N_2_r0_y*o_1_x
     G_m_t_2 = N_2_r0_y*o_1_y
     # (E5) moment that actuators and external wrench must give
     R_a_t = (
-    G_m_t*axis_x_x + c_in_base_z*q_in_base_y - G_m_t_2*axis_y_upu_axes2_x -
+    G_m_t*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y - G_m_t_2*axis_y_upu_axes2_in_base_x -
         c_in_base_y*q_in_base_z
     )
     R_a_t_2 = (
-    G_m_t*axis_x_y + c_in_base_x*q_in_base_z - G_m_t_2*axis_y_upu_axes2_y -
+    G_m_t*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z - G_m_t_2*axis_y_upu_axes2_in_base_y -
         c_in_base_z*q_in_base_x
     )
     R_a_t_3 = (
-    G_m_t*axis_x_z + c_in_base_y*q_in_base_x - G_m_t_2*axis_y_upu_axes2_z -
+    G_m_t*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x - G_m_t_2*axis_y_upu_axes2_in_base_z -
         c_in_base_x*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
-    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (axis_x_x, axis_x_y,
-        axis_x_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y,
-        Hk_a_1_z,),
+    ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (axis_x_upu_axes2_x,
+        axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2,
+        -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
     )
 
 
@@ -3131,7 +3336,7 @@ def _inverse_kinematics_upu(c, k, x, s, f):
     return (ok, (), (q_1, q_2, root_2,),)
 
 
-# joint_rates: 351 mul, 219 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 375 mul, 237 add, 12 div, 6 sqrt, 0 trig
 def _joint_rates_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3271,44 +3476,63 @@ def _joint_rates_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-V1) velocity of the connection point
     S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
     S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
     # (upu-V18) rate of joint 1
     qd_1_t = (
-    end_p1_r3_y*w_1_t_2*(axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z) -
-        end_p1_r3_x*w_1_t_2*(axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y +
-        axis_y_upu_axes2_z*omega_z)
+    end_p1_r3_y*w_1_t_4*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+        axis_x_upu_axes2_z*omega_z) - end_p1_r3_x*w_1_t_4*(axis_y_upu_axes2_in_base_x*omega_x +
+        axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z)
     )
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (qd_1, qd_1_t_2, S_dot_tip_x,),)
 
 
-# joint_accelerations: 540 mul, 357 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 564 mul, 375 add, 12 div, 6 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3464,21 +3688,38 @@ def _joint_accelerations_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_2
-    o_1_y = end_p1_r3_x*w_1_t_2
+    o_1_x = end_p1_r3_y*w_1_t_4
+    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -3487,9 +3728,12 @@ def _joint_accelerations_upu(c, k, x, s, f):
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
     # (upu-V18) rate of joint 1
-    omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z
+    omega_tip_x = (
+    axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+    )
     omega_tip_y = (
-    axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+    axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z
     )
     omega_tip_z = (
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
@@ -3497,14 +3741,16 @@ def _joint_accelerations_upu(c, k, x, s, f):
     )
     qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
     # (upu-V21) angular velocity of link 1
@@ -3535,8 +3781,8 @@ def _joint_accelerations_upu(c, k, x, s, f):
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
     # (upu-A6) acceleration of the connection point left to the joint accelerations
     rel_x = (
-    S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z + root_2*(omega_1_t_2*omega_1_t_2 +
-        qd_1_t_2*qd_1_t_2)
+    S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z +
+        root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t_2*qd_1_t_2)
     )
     rel_z = (
     S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
@@ -3544,16 +3790,16 @@ def _joint_accelerations_upu(c, k, x, s, f):
     )
     # (upu-A10) acceleration of joint 1
     qdd_1_t = (
-    o_1_x*(alpha_x*axis_x_x + alpha_y*axis_x_y + alpha_z*axis_x_z) -
-        o_1_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
-        alpha_z*axis_y_upu_axes2_z)
+    o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
+        o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x + alpha_y*axis_y_upu_axes2_in_base_y +
+        alpha_z*axis_y_upu_axes2_in_base_z)
     )
     qdd_1_t_2 = (
-    inv_root_2*(S_ddot_x*axis_y_upu_axes2_x + S_ddot_y*axis_y_upu_axes2_y +
-        S_ddot_z*axis_y_upu_axes2_z - bias_t*qd_1_t_2) + omega_1_t*omega_1_t_2
+    inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
+        S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t*qd_1_t_2) + omega_1_t*omega_1_t_2
     )
-    qdd_1 = inv_w_1_t_14*rel_z + nu_1*w_1_t_2 - qdd_1_t
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (qdd_1, qdd_1_t_2, rel_x,),)
 
 
@@ -3651,7 +3897,7 @@ def _constraints_upu(c, k, x, s, f):
     return (ok, (), (-end_p1_r1_x,),)
 
 
-# legs: 786 mul, 552 add, 12 div, 6 sqrt, 0 trig
+# legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3809,21 +4055,38 @@ def _legs_upu(c, k, x, s, f):
     # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
     n_c_z = n_m1_r0_y*root_2/volume_c_t_2
     # (upu-V9) force part of reciprocal wrench 1
-    axis_x_x = S_x*inv_root_2
-    axis_x_y = S_y*inv_root_2
-    axis_x_z = S_z*inv_root_2
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
-    axis_y_upu_axes2_x = axis_x_z*axis_z_upu_axes2_in_base_y - axis_x_y*axis_z_upu_axes2_in_base_z
-    axis_y_upu_axes2_y = axis_x_x*axis_z_upu_axes2_in_base_z - axis_x_z*axis_z_upu_axes2_in_base_x
-    axis_y_upu_axes2_z = axis_x_y*axis_z_upu_axes2_in_base_x - axis_x_x*axis_z_upu_axes2_in_base_y
-    w_1_t = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_14 = 1.0/w_1_t
-    w_1_t_2 = inv_w_1_t_14*n_c_z
+    w_1_t = s_1*s_2
+    w_1_t_2 = c_1*s_2
+    axis_y_upu_axes2_in_base_x = (
+    upu_base_frame_xx*w_1_t + upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz
+    )
+    axis_y_upu_axes2_in_base_y = (
+    upu_base_frame_yx*w_1_t + upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz
+    )
+    axis_y_upu_axes2_in_base_z = (
+    upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
+    )
+    axis_x_upu_axes2_x = (
+    axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y
+    )
+    axis_x_upu_axes2_y = (
+    axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z
+    )
+    axis_x_upu_axes2_z = (
+    axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
+    )
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    inv_w_1_t_25 = 1.0/w_1_t_3
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_2
-    o_1_y = end_p1_r3_x*w_1_t_2
+    o_1_x = end_p1_r3_y*w_1_t_4
+    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -3832,9 +4095,12 @@ def _legs_upu(c, k, x, s, f):
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
     # (upu-V18) rate of joint 1
-    omega_tip_x = axis_x_x*omega_x + axis_x_y*omega_y + axis_x_z*omega_z
+    omega_tip_x = (
+    axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
+    )
     omega_tip_y = (
-    axis_y_upu_axes2_x*omega_x + axis_y_upu_axes2_y*omega_y + axis_y_upu_axes2_z*omega_z
+    axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z
     )
     omega_tip_z = (
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
@@ -3842,14 +4108,16 @@ def _legs_upu(c, k, x, s, f):
     )
     qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
     # (upu-V1) velocity of the connection point
-    S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y + S_dot_z*axis_x_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_x + S_dot_y*axis_y_upu_axes2_y +
-        S_dot_z*axis_y_upu_axes2_z)
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1 = (
-    inv_w_1_t_14*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
         S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
     )
     # (upu-V21) angular velocity of link 1
@@ -3888,9 +4156,9 @@ def _legs_upu(c, k, x, s, f):
     n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
     n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (upu-V5) direction 1 of the moment that the platform joint transmits
-    n_m1_in_base_x = axis_y_upu_axes2_x*end_p1_r3_x - axis_x_x*end_p1_r3_y
-    n_m1_in_base_y = axis_y_upu_axes2_y*end_p1_r3_x - axis_x_y*end_p1_r3_y
-    n_m1_in_base_z = axis_y_upu_axes2_z*end_p1_r3_x - axis_x_z*end_p1_r3_y
+    n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
+    n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
+    n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
     # (upu-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -3906,16 +4174,16 @@ def _legs_upu(c, k, x, s, f):
     )
     # (upu-A10) acceleration of joint 1
     qdd_1_t = (
-    o_1_x*(alpha_x*axis_x_x + alpha_y*axis_x_y + alpha_z*axis_x_z) -
-        o_1_y*(alpha_x*axis_y_upu_axes2_x + alpha_y*axis_y_upu_axes2_y +
-        alpha_z*axis_y_upu_axes2_z)
+    o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
+        o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x + alpha_y*axis_y_upu_axes2_in_base_y +
+        alpha_z*axis_y_upu_axes2_in_base_z)
     )
     qdd_1_t_2 = (
-    S_ddot_x*axis_y_upu_axes2_x + S_ddot_y*axis_y_upu_axes2_y + S_ddot_z*axis_y_upu_axes2_z -
-        bias_t_2
+    S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
+        S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
     )
     qdd_1_t_3 = inv_root_2*qdd_1_t_2
-    qdd_1 = inv_w_1_t_14*rel_z + nu_1*w_1_t_2 - qdd_1_t
+    qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t
     # (upu-A16) angular acceleration of link 1
     alpha_1_t = qdd_1*s_2
     alpha_1_t_2 = c_2*qdd_1
@@ -3927,7 +4195,10 @@ def _legs_upu(c, k, x, s, f):
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x - zeta_2_x
     # (upu-N3) acceleration of the reference point of link 3, less gravity
-    acc_3_x = S_ddot_x*axis_x_x + S_ddot_y*axis_x_y + S_ddot_z*axis_x_z - g_r3_x
+    acc_3_x = (
+    S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z -
+        g_r3_x
+    )
     acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y
     acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x
     # (upu-N11) inertia force of link 3 less its weight
@@ -3954,23 +4225,29 @@ def _legs_upu(c, k, x, s, f):
     N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2
     # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_3_y + inv_root_2*mu_2_z
-    G_t_2 = N_2_r0_y*inv_w_1_t_14
+    G_t_2 = N_2_r0_y*inv_w_1_t_25
     # (upu-N46) leg force on the platform without actuation and without the mass at the connection point
-    c_in_base_x = -G_t*axis_y_upu_axes2_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_x*f_3_x
-    c_in_base_y = -G_t*axis_y_upu_axes2_y - G_t_2*axis_z_upu_axes2_in_base_y - axis_x_y*f_3_x
-    c_in_base_z = -G_t*axis_y_upu_axes2_z - G_t_2*axis_z_upu_axes2_in_base_z - axis_x_z*f_3_x
+    c_in_base_x = (
+    -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x
+    )
+    c_in_base_y = (
+    -G_t*axis_y_upu_axes2_in_base_y - G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x
+    )
+    c_in_base_z = (
+    -G_t*axis_y_upu_axes2_in_base_z - G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x
+    )
     # (upu-N42) moment at the connection point that balances the leg's inertia and weight along all freedoms
     G_m_t = N_2_r0_y*o_1_x
     G_m_t_2 = N_2_r0_y*o_1_y
     # (upu-N51) moment of the leg on the platform without actuation
-    c_m_in_base_x = G_m_t*axis_x_x - G_m_t_2*axis_y_upu_axes2_x
-    c_m_in_base_y = G_m_t*axis_x_y - G_m_t_2*axis_y_upu_axes2_y
-    c_m_in_base_z = G_m_t*axis_x_z - G_m_t_2*axis_y_upu_axes2_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t) > _TOLERANCE * size)
+    c_m_in_base_x = G_m_t*axis_x_upu_axes2_x - G_m_t_2*axis_y_upu_axes2_in_base_x
+    c_m_in_base_y = G_m_t*axis_x_upu_axes2_y - G_m_t_2*axis_y_upu_axes2_in_base_y
+    c_m_in_base_z = G_m_t*axis_x_upu_axes2_z - G_m_t_2*axis_y_upu_axes2_in_base_z
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (), (c_in_base_x, c_in_base_y, c_in_base_z, c_m_in_base_x, c_m_in_base_y, c_m_in_base_z,
-        axis_x_x, axis_x_y, axis_x_z, -n_c_t, -n_c_t_2, -n_c_t_3, n_m1_in_base_x, n_m1_in_base_y,
-        n_m1_in_base_z,),
+        axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, -n_c_t, -n_c_t_2, -n_c_t_3,
+        n_m1_in_base_x, n_m1_in_base_y, n_m1_in_base_z,),
     )
 
 
@@ -4251,11 +4528,11 @@ arrays=(('H', (6, 3)),),
             _H_upu,
             "upu",
 (),
-('branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz',
-            'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx',
-            'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y',
-            'upu_base_point_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z'),
+('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+            'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
+            'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
+            'upu_base_point_y', 'upu_base_point_z', 'upu_platform_point_x',
+            'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -4717,7 +4994,8 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
 
 
 def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7)."""
+    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
+    """
     A = np.array(_vector("complete_acceleration", "A", A, NV))
     _vector("complete_acceleration", "X", X, NQ)
     _vector("complete_acceleration", "V", V, NV)

@@ -94,7 +94,7 @@ def _compact(svg: str) -> str:
     svg = re.sub(r'\s*\nz\s*"', 'z"', svg)
     svg = re.sub(r"(?<=[;:]) (?=[a-z#\d])", "", svg)
     svg = svg.replace("; ", ";").replace(";stroke-linecap:round", "")
-    svg = svg.replace(f";stroke-width:{LINE}\"", '"')
+    svg = svg.replace(f';stroke-width:{LINE}"', '"')
     svg = svg.replace("stroke-linecap:butt", f"stroke-linecap:round;stroke-width:{LINE}")
     return "\n".join(line.strip() for line in svg.splitlines() if line.strip()) + "\n"
 
