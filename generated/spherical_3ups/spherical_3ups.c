@@ -3738,9 +3738,6 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
     const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
-    for (size_t i = 0; i < 0; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
     to[0] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
     to[1] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
     to[2] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
