@@ -90,18 +90,17 @@ typedef struct {
     delta_real Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
             m_star;
     /* legs of type rus */
-    delta_real J_1_zz[3], J_3_xx[3], J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3],
-            Kd_1_t_2[3], Kd_1_t_3[3], Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3], b_r0_x[3],
-            b_r0_y[3], branch_1[3], branch_2[3], d_mu_3_t[3], d_mu_3_t_2[3], d_mu_3_t_3[3],
-            d_phi_3_t[3], d_phi_3_t_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3], h_1_y[3],
-            h_1_z[3], h_3_x[3], h_3_y[3], h_3_z[3], inv_Kd_1_t_6[3],
-            inv_rus_platform_joint_offset_x[3], inv_uu_3_t[3], potential_t[3], rho2_1_t[3],
-            rus_base_frame_xx[3], rus_base_frame_xy[3], rus_base_frame_xz[3], rus_base_frame_yx[3],
-            rus_base_frame_yy[3], rus_base_frame_yz[3], rus_base_frame_zx[3], rus_base_frame_zy[3],
-            rus_base_frame_zz[3], rus_base_point_x[3], rus_base_point_y[3], rus_base_point_z[3],
-            rus_joint2_offset_x[3], rus_link1_mass[3], rus_link3_mass[3],
-            rus_platform_joint_offset_x[3], rus_platform_point_x[3], rus_platform_point_y[3],
-            rus_platform_point_z[3], size_[3], size_t_3[3];
+    delta_real J_1_zz[3], J_3_xx[3], J_3_xy[3], J_3_xz[3], J_3_yz[3], J_3_zz[3], Kd_1_t_2[3],
+            Kd_1_t_3[3], Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3], b_r0_x[3], b_r0_y[3],
+            branch_1[3], branch_2[3], d_Gamma_3_t[3], d_Gamma_3_y[3], d_c_yy[3], d_phi_3_t[3],
+            g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3], h_1_y[3], h_1_z[3], h_3_x[3], h_3_y[3],
+            h_3_z[3], inv_Kd_1_t_6[3], inv_rus_platform_joint_offset_x[3], inv_uu_3_t[3],
+            potential_t[3], rho2_1_t[3], rus_base_frame_xx[3], rus_base_frame_xy[3],
+            rus_base_frame_xz[3], rus_base_frame_yx[3], rus_base_frame_yy[3], rus_base_frame_yz[3],
+            rus_base_frame_zx[3], rus_base_frame_zy[3], rus_base_frame_zz[3], rus_base_point_x[3],
+            rus_base_point_y[3], rus_base_point_z[3], rus_joint2_offset_x[3], rus_link1_mass[3],
+            rus_link3_mass[3], rus_platform_joint_offset_x[3], rus_platform_point_x[3],
+            rus_platform_point_y[3], rus_platform_point_z[3], size_[3], size_t_3[3];
 } delta_model;
 
 extern const delta_params delta_default_params;
@@ -113,7 +112,7 @@ extern const delta_real delta_HOME_Q[DELTA_NJ];
    model is all NaN. */
 int delta_prepare(const delta_params *params, delta_model *model);
 
-/* Inertia matrix M. 657 mul, 411 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 516 mul, 324 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int delta_M(const delta_model *model, const delta_real *X, delta_real *M);
 size_t delta_M_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *M, int
     *status);
@@ -130,7 +129,7 @@ int delta_H(const delta_model *model, const delta_real *X, delta_real *H);
 size_t delta_H_batch(const delta_model *model, size_t n, const delta_real *X, delta_real *H, int
     *status);
 
-/* M, Z and H together, sharing the work. 996 mul, 651 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 855 mul, 564 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int delta_dynamics(const delta_model *model, const delta_real *X, const delta_real *V, delta_real
     *M, delta_real *Z, delta_real *H);
@@ -165,7 +164,7 @@ int delta_inverse_dynamics(const delta_model *model, const delta_real *X, const 
 size_t delta_inverse_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 996 mul, 651 add, 12 div, 6 sqrt,
+/* Acceleration A under the actuator forces tau and the wrench. 855 mul, 564 add, 12 div, 6 sqrt,
    0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW,
    or NULL). Out: A (NV). */
 int delta_forward_dynamics(const delta_model *model, const delta_real *X, const delta_real *V,

@@ -377,13 +377,13 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real rr_link1_centre_of_mass_y = params->rr_link1_centre_of_mass[leg][1];
         const real rr_link1_inertia_zz = params->rr_link1_inertia[leg][2][2];
         /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x;
-        const real n_c_rr_x = rr_platform_joint_offset_x/(root(n_c_rr_t));
+        const real n_c1_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x;
+        const real n_c1_rr_x = rr_platform_joint_offset_x/(root(n_c1_rr_t));
         /* (rr-G1) size of the leg, the measure of what is near singular */
         const real size_rr_t = rr_base_point_x*rr_base_point_x + rr_base_point_y*rr_base_point_y;
         const real size_rr_t_2 = rr_platform_point_x*rr_platform_point_x +
             rr_platform_point_y*rr_platform_point_y;
-        const real size_rr_t_3 = n_c_rr_t + size_rr_t + size_rr_t_2;
+        const real size_rr_t_3 = n_c1_rr_t + size_rr_t + size_rr_t_2;
         const real size_rr = root(size_rr_t_3);
         /* (rr-K4) amplitude: off the manifold the nearest angle is taken */
         const real root_1_rr_t = size_rr*size_rr*size_rr_t_3;
@@ -393,9 +393,10 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real J_1_rr_zz = rr_link1_inertia_zz + J_1_rr_t*rr_link1_mass;
         /* (rr-V4) reciprocal vector 1 */
         const real inv_rr_platform_joint_offset_x = 1/rr_platform_joint_offset_x;
-        /* (rr-N17) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rr_t =
-            R(0.5)*J_1_rr_zz*inv_rr_platform_joint_offset_x*inv_rr_platform_joint_offset_x;
+        /* (rr-N12) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_rr_yy =
+            J_1_rr_zz*inv_rr_platform_joint_offset_x*inv_rr_platform_joint_offset_x;
         /* (rr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*rr_base_frame_xx + gravity_y*rr_base_frame_yx;
@@ -407,14 +408,14 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real potential_t = rr_base_point_x*rr_link1_mass;
         const real potential_t_2 = rr_base_point_y*rr_link1_mass;
         model->J_1_rr_zz[leg] = J_1_rr_zz;
-        model->Q_rr_t[leg] = Q_rr_t;
+        model->d_G_rr_yy[leg] = d_G_rr_yy;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->h_1_rr_x[leg] = h_1_rr_x;
         model->h_1_rr_y[leg] = h_1_rr_y;
         model->inv_rr_platform_joint_offset_x[leg] = inv_rr_platform_joint_offset_x;
-        model->n_c_rr_t[leg] = n_c_rr_t;
-        model->n_c_rr_x[leg] = n_c_rr_x;
+        model->n_c1_rr_t[leg] = n_c1_rr_t;
+        model->n_c1_rr_x[leg] = n_c1_rr_x;
         model->potential_t[leg] = potential_t;
         model->potential_t_2[leg] = potential_t_2;
         model->root_1_rr_t[leg] = root_1_rr_t;
@@ -479,11 +480,24 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
+            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
@@ -504,11 +518,16 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
+        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
         model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
         model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
         model->b_rrr_r0_x[leg] = b_rrr_r0_x;
         model->b_rrr_r0_y[leg] = b_rrr_r0_y;
         model->branch_1_rrr[leg] = branch_1_rrr;
+        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
+        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
+        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
+        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
         model->g_r0_x_2[leg] = g_r0_x_2;
         model->g_r0_y_2[leg] = g_r0_y_2;
         model->h_1_rrr_x[leg] = h_1_rrr_x;
@@ -563,7 +582,7 @@ int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_m
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 228 mul, 152 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 205 mul, 143 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
@@ -641,14 +660,14 @@ INLINE void dynamics_legs_rr(const prepared *m, size_t leg, size_t legs, const d
         const real t_dot_y = s->t_dot_y[j];
         const real omega_z = s->omega_z[j];
         const real J_1_rr_zz = m->J_1_rr_zz[i];
-        const real Q_rr_t = m->Q_rr_t[i];
+        const real d_G_rr_yy = m->d_G_rr_yy[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real h_1_rr_x = m->h_1_rr_x[i];
         const real h_1_rr_y = m->h_1_rr_y[i];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
+        const real n_c1_rr_x = m->n_c1_rr_x[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -667,7 +686,7 @@ INLINE void dynamics_legs_rr(const prepared *m, size_t leg, size_t legs, const d
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -676,16 +695,15 @@ INLINE void dynamics_legs_rr(const prepared *m, size_t leg, size_t legs, const d
         /* (rr-V4) reciprocal vector 1 */
         const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
         const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        /* (rr-N17) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rr_t_2 = Q_rr_t*axis_y_rr_axes1_in_base_x;
-        const real Q_rr_t_3 = Q_rr_t*axis_y_rr_axes1_in_base_y;
-        const real Q_rr_t_4 = 2*Q_rr_t_2*axis_y_rr_axes1_in_base_x;
-        const real Q_rr_t_5 = Q_rr_t_2*axis_y_rr_axes1_in_base_y +
-            Q_rr_t_3*axis_y_rr_axes1_in_base_x;
-        const real Q_rr_t_6 = 2*Q_rr_t_3*axis_y_rr_axes1_in_base_y;
+        /* (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy;
+        const real d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t;
+        const real d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t;
+        const real d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_rr_t_4*q_rr_in_base_y - Q_rr_t_5*q_rr_in_base_x;
-        const real M_ta_t_2 = Q_rr_t_5*q_rr_in_base_y - Q_rr_t_6*q_rr_in_base_x;
+        const real M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x;
+        const real M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x;
         /* (rr-V1) velocity of the connection point */
@@ -721,15 +739,15 @@ INLINE void dynamics_legs_rr(const prepared *m, size_t leg, size_t legs, const d
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t;
         /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
+        const real n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x;
+        const real n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x;
         /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
+        const real Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x;
         /* (M12) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x;
-        o->sum[0][k] = Q_rr_t_4;  /* total_rr_xx */
-        o->sum[1][k] = Q_rr_t_5;  /* total_rr_xy */
-        o->sum[2][k] = Q_rr_t_6;  /* total_rr_yy */
+        const real gamma_c1_rr_t = n_c1_rr_x*rel_rr_o_x;
+        o->sum[0][k] = d_c_rr_t_2;  /* total_rr_xx */
+        o->sum[1][k] = d_c_rr_t_3;  /* total_rr_xy */
+        o->sum[2][k] = d_c_rr_t_4;  /* total_rr_yy */
         o->sum[3][k] = M_ta_t;  /* total_rr_xz */
         o->sum[4][k] = M_ta_t_2;  /* total_rr_yz */
         o->sum[5][k] = M_aa_t;  /* total_rr_zz */
@@ -739,8 +757,8 @@ INLINE void dynamics_legs_rr(const prepared *m, size_t leg, size_t legs, const d
         o->entry[0][k] = w_1_rr_t;
         o->entry[1][k] = w_1_rr_t_2;
         o->entry[2][k] = H_a_1_rr_z;
-        o->entry[3][k] = -n_c_rr_t_2;
-        o->entry[4][k] = n_c_rr_t_3;
+        o->entry[3][k] = -n_c1_rr_t_2;
+        o->entry[4][k] = n_c1_rr_t_3;
         o->entry[5][k] = Hk_a_1_rr_z;
         o->entry[6][k] = -gamma_c1_rr_t;
         o->singular[k] = unless(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
@@ -777,9 +795,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_z = s->omega_z[j];
         const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real g_r0_x_2 = m->g_r0_x_2[i];
         const real g_r0_y_2 = m->g_r0_y_2[i];
         const real h_1_rrr_x = m->h_1_rrr_x[i];
@@ -850,49 +873,38 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x;
+        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr;
@@ -909,11 +921,13 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -924,35 +938,35 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -960,10 +974,10 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3;
+        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -973,8 +987,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         o->sum[6][k] = U_rrr_in_base_x;  /* total_rrr_x */
         o->sum[7][k] = U_rrr_in_base_y;  /* total_rrr_y */
         o->sum[8][k] = Z_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t_3;
-        o->entry[1][k] = w_1_rrr_t_4;
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
         o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
             unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
@@ -1024,14 +1038,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real J_star_t_8 = m->J_star_t_8;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rr_xx + total_rrr_xx;
+        const real M_tt_xx = m_star + total_rr_xx - total_rrr_xx;
         const real M_tt_xy = total_rr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rr_yy + total_rrr_yy;
+        const real M_tt_yy = m_star + total_rr_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = -h_star_in_base_y - total_rr_xz - total_rrr_xz;
+        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz;
         const real M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_rr_zz + total_rrr_zz - J_star_t_8;
+        const real M_aa_zz = total_rr_zz - J_star_t_8 - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_rr_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_rr_y + total_rrr_y;
@@ -1118,7 +1132,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 6, w, code, H);
 }
 
-/* ---- M: 127 mul, 89 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 106 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
         h_star_in_base_y[LANES], sum[12][LANES];
@@ -1165,8 +1179,8 @@ INLINE void M_legs_rr(const prepared *m, size_t leg, size_t legs, const M_values
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real Q_rr_t = m->Q_rr_t[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real d_G_rr_yy = m->d_G_rr_yy[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -1185,7 +1199,7 @@ INLINE void M_legs_rr(const prepared *m, size_t leg, size_t legs, const M_values
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -1194,21 +1208,20 @@ INLINE void M_legs_rr(const prepared *m, size_t leg, size_t legs, const M_values
         /* (rr-V4) reciprocal vector 1 */
         const real axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr;
         const real axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr;
-        /* (rr-N17) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rr_t_2 = Q_rr_t*axis_y_rr_axes1_in_base_x;
-        const real Q_rr_t_3 = Q_rr_t*axis_y_rr_axes1_in_base_y;
-        const real Q_rr_t_4 = 2*Q_rr_t_2*axis_y_rr_axes1_in_base_x;
-        const real Q_rr_t_5 = Q_rr_t_2*axis_y_rr_axes1_in_base_y +
-            Q_rr_t_3*axis_y_rr_axes1_in_base_x;
-        const real Q_rr_t_6 = 2*Q_rr_t_3*axis_y_rr_axes1_in_base_y;
+        /* (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy;
+        const real d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t;
+        const real d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t;
+        const real d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_rr_t_4*q_rr_in_base_y - Q_rr_t_5*q_rr_in_base_x;
-        const real M_ta_t_2 = Q_rr_t_5*q_rr_in_base_y - Q_rr_t_6*q_rr_in_base_x;
+        const real M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x;
+        const real M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x;
-        o->sum[0][k] = Q_rr_t_4;  /* total_rr_xx */
-        o->sum[1][k] = Q_rr_t_5;  /* total_rr_xy */
-        o->sum[2][k] = Q_rr_t_6;  /* total_rr_yy */
+        o->sum[0][k] = d_c_rr_t_2;  /* total_rr_xx */
+        o->sum[1][k] = d_c_rr_t_3;  /* total_rr_xy */
+        o->sum[2][k] = d_c_rr_t_4;  /* total_rr_yy */
         o->sum[3][k] = M_ta_t;  /* total_rr_xz */
         o->sum[4][k] = M_ta_t_2;  /* total_rr_yz */
         o->sum[5][k] = M_aa_t;  /* total_rr_zz */
@@ -1233,12 +1246,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real h_2_rrr_y = m->h_2_rrr_y[i];
         const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -1289,6 +1305,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
         const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
         const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr = 1/rho2_1_rrr;
@@ -1303,50 +1320,38 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x;
+        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -1387,14 +1392,14 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real J_star_t_8 = m->J_star_t_8;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rr_xx + total_rrr_xx;
+        const real M_tt_xx = m_star + total_rr_xx - total_rrr_xx;
         const real M_tt_xy = total_rr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rr_yy + total_rrr_yy;
+        const real M_tt_yy = m_star + total_rr_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = -h_star_in_base_y - total_rr_xz - total_rrr_xz;
+        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz;
         const real M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_rr_zz + total_rrr_zz - J_star_t_8;
+        const real M_aa_zz = total_rr_zz - J_star_t_8 - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
@@ -1466,7 +1471,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 9, w, code, M);
 }
 
-/* ---- Z: 150 mul, 91 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 148 mul, 91 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
@@ -1540,7 +1545,7 @@ INLINE void Z_legs_rr(const prepared *m, size_t leg, size_t legs, const Z_values
         const real h_1_rr_x = m->h_1_rr_x[i];
         const real h_1_rr_y = m->h_1_rr_y[i];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -1559,7 +1564,7 @@ INLINE void Z_legs_rr(const prepared *m, size_t leg, size_t legs, const Z_values
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -1700,11 +1705,13 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -1715,35 +1722,35 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -1890,7 +1897,7 @@ INLINE void H_legs_rr(const prepared *m, size_t leg, size_t legs, const H_values
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -1909,7 +1916,7 @@ INLINE void H_legs_rr(const prepared *m, size_t leg, size_t legs, const H_values
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -2113,8 +2120,8 @@ INLINE void Hk_legs_rr(const prepared *m, size_t leg, size_t legs, const Hk_valu
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
+        const real n_c1_rr_x = m->n_c1_rr_x[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -2133,19 +2140,19 @@ INLINE void Hk_legs_rr(const prepared *m, size_t leg, size_t legs, const Hk_valu
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
         /* (rr-K6) sine of the angle of joint 1 from its reference direction */
         const real s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x;
         /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = n_c_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr);
-        const real n_c_rr_t_3 = n_c_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr);
+        const real n_c1_rr_t_2 = n_c1_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr);
+        const real n_c1_rr_t_3 = n_c1_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr);
         /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
-        o->entry[0][k] = -n_c_rr_t_2;
-        o->entry[1][k] = n_c_rr_t_3;
+        const real Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x;
+        o->entry[0][k] = -n_c1_rr_t_2;
+        o->entry[1][k] = n_c1_rr_t_3;
         o->entry[2][k] = Hk_a_1_rr_z;
         o->singular[k] = unless(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
     }
@@ -2243,8 +2250,8 @@ INLINE void constraint_bias_legs_rr(const prepared *m, size_t leg, size_t legs, 
         const real t_dot_y = s->t_dot_y[j];
         const real omega_z = s->omega_z[j];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
+        const real n_c1_rr_x = m->n_c1_rr_x[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -2263,7 +2270,7 @@ INLINE void constraint_bias_legs_rr(const prepared *m, size_t leg, size_t legs, 
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -2285,7 +2292,7 @@ INLINE void constraint_bias_legs_rr(const prepared *m, size_t leg, size_t legs, 
             S_dot_rr_t*axis_y_rr_axes1_in_base_x*omega_z -
             S_dot_rr_t_2*axis_y_rr_axes1_in_base_y*omega_z;
         /* (M12) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x;
+        const real gamma_c1_rr_t = n_c1_rr_x*rel_rr_o_x;
         o->entry[0][k] = -gamma_c1_rr_t;
         o->singular[k] = unless(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
     }
@@ -2333,7 +2340,7 @@ INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, cons
     deliver(constraint_bias_of, 1, w, code, bias);
 }
 
-/* ---- required: 171 mul, 107 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 169 mul, 107 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
@@ -2428,8 +2435,8 @@ INLINE void required_legs_rr(const prepared *m, size_t leg, size_t legs, const r
         const real h_1_rr_x = m->h_1_rr_x[i];
         const real h_1_rr_y = m->h_1_rr_y[i];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
+        const real n_c1_rr_x = m->n_c1_rr_x[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -2448,7 +2455,7 @@ INLINE void required_legs_rr(const prepared *m, size_t leg, size_t legs, const r
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -2462,10 +2469,10 @@ INLINE void required_legs_rr(const prepared *m, size_t leg, size_t legs, const r
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t;
         /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
+        const real n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x;
+        const real n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x;
         /* (M10) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x;
+        const real Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x;
         /* (rr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y;
         const real a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x;
@@ -2491,8 +2498,8 @@ INLINE void required_legs_rr(const prepared *m, size_t leg, size_t legs, const r
         o->entry[0][k] = w_1_rr_t;
         o->entry[1][k] = w_1_rr_t_2;
         o->entry[2][k] = H_a_1_rr_z;
-        o->entry[3][k] = -n_c_rr_t_2;
-        o->entry[4][k] = n_c_rr_t_3;
+        o->entry[3][k] = -n_c1_rr_t_2;
+        o->entry[4][k] = n_c1_rr_t_3;
         o->entry[5][k] = Hk_a_1_rr_z;
         o->singular[k] = unless(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
     }
@@ -2617,11 +2624,13 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -2639,7 +2648,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -2647,22 +2656,22 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
             J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
@@ -2807,7 +2816,7 @@ INLINE void inverse_kinematics_legs_rr(const prepared *m, size_t leg, size_t leg
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -2826,7 +2835,7 @@ INLINE void inverse_kinematics_legs_rr(const prepared *m, size_t leg, size_t leg
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         /* (rr-K7) displacement of joint 1 */
@@ -3022,7 +3031,7 @@ INLINE void joint_rates_legs_rr(const prepared *m, size_t leg, size_t legs, cons
         const real t_dot_y = s->t_dot_y[j];
         const real omega_z = s->omega_z[j];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -3041,7 +3050,7 @@ INLINE void joint_rates_legs_rr(const prepared *m, size_t leg, size_t legs, cons
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -3220,7 +3229,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 3, w, code, rates);
 }
 
-/* ---- joint_accelerations: 101 mul, 55 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 100 mul, 55 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -3286,7 +3295,7 @@ INLINE void joint_accelerations_legs_rr(const prepared *m, size_t leg, size_t le
         const real t_ddot_y = s->t_ddot_y[j];
         const real alpha_z = s->alpha_z[j];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -3305,7 +3314,7 @@ INLINE void joint_accelerations_legs_rr(const prepared *m, size_t leg, size_t le
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -3431,9 +3440,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
         const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
@@ -3444,8 +3455,7 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real rel_rrr_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
         const real rel_rrr_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
@@ -3551,8 +3561,8 @@ INLINE void constraints_legs_rr(const prepared *m, size_t leg, size_t legs, cons
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
+        const real n_c1_rr_x = m->n_c1_rr_x[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -3571,12 +3581,12 @@ INLINE void constraints_legs_rr(const prepared *m, size_t leg, size_t legs, cons
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         /* (M11) distance by which the leg misses the connection point, along a direction left out */
         const real phi_c1_rr_t =
-            n_c_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
+            n_c1_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
             inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -
             rr_platform_joint_offset_x);
         o->entry[0][k] = -phi_c1_rr_t;
@@ -3624,7 +3634,7 @@ INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *re
     deliver(constraints_of, 1, w, code, residual);
 }
 
-/* ---- legs: 145 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 143 mul, 80 add, 3 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -3694,8 +3704,8 @@ INLINE void legs_legs_rr(const prepared *m, size_t leg, size_t legs, const legs_
         const real h_1_rr_x = m->h_1_rr_x[i];
         const real h_1_rr_y = m->h_1_rr_y[i];
         const real inv_rr_platform_joint_offset_x = m->inv_rr_platform_joint_offset_x[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
-        const real n_c_rr_x = m->n_c_rr_x[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
+        const real n_c1_rr_x = m->n_c1_rr_x[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
         const real rr_base_frame_xx = m->rr_base_frame_xx[i];
         const real rr_base_frame_xy = m->rr_base_frame_xy[i];
@@ -3714,7 +3724,7 @@ INLINE void legs_legs_rr(const prepared *m, size_t leg, size_t legs, const legs_
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;
@@ -3726,8 +3736,8 @@ INLINE void legs_legs_rr(const prepared *m, size_t leg, size_t legs, const legs_
         const real w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x;
         const real w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x;
         /* (rr-V3) unit vector that the leg's freedoms leave out */
-        const real n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x;
-        const real n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x;
+        const real n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x;
+        const real n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x;
         /* (rr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y;
         const real a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x;
@@ -3749,8 +3759,8 @@ INLINE void legs_legs_rr(const prepared *m, size_t leg, size_t legs, const legs_
         o->entry[1][k] = -c_rr_t_2;
         o->entry[2][k] = w_1_rr_t;
         o->entry[3][k] = w_1_rr_t_2;
-        o->entry[4][k] = -n_c_rr_t_2;
-        o->entry[5][k] = n_c_rr_t_3;
+        o->entry[4][k] = -n_c1_rr_t_2;
+        o->entry[5][k] = n_c1_rr_t_3;
         o->singular[k] = unless(magnitude(rho2_1_rr) > TOLERANCE*TOLERANCE*root_1_rr_t);
     }
 }
@@ -3875,11 +3885,13 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -3895,7 +3907,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -3903,27 +3915,27 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
             J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
         const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
         const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
         const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
@@ -4039,7 +4051,7 @@ INLINE void potential_legs_rr(const prepared *m, size_t leg, size_t legs, const 
         const real gravity_y = m->gravity_y;
         const real h_1_rr_x = m->h_1_rr_x[i];
         const real h_1_rr_y = m->h_1_rr_y[i];
-        const real n_c_rr_t = m->n_c_rr_t[i];
+        const real n_c1_rr_t = m->n_c1_rr_t[i];
         const real potential_t = m->potential_t[i];
         const real potential_t_2 = m->potential_t_2[i];
         const real root_1_rr_t = m->root_1_rr_t[i];
@@ -4060,7 +4072,7 @@ INLINE void potential_legs_rr(const prepared *m, size_t leg, size_t legs, const 
         /* (rr-K3) squared amplitude */
         const real rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy;
         const real rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx;
-        const real rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
+        const real rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2);
         /* (rr-K5) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1_rr = 1/(root(rho2_1_rr));
         const real c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x;

@@ -104,20 +104,21 @@ typedef struct {
     fivebar_offset_real J_star_t_8, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x,
             h_star_y, m_star;
     /* legs of type rr */
-    fivebar_offset_real J_1_rr_zz[1], Q_rr_t[1], g_r0_x[1], g_r0_y[1], h_1_rr_x[1], h_1_rr_y[1],
-            inv_rr_platform_joint_offset_x[1], n_c_rr_t[1], n_c_rr_x[1], potential_t[1],
+    fivebar_offset_real J_1_rr_zz[1], d_G_rr_yy[1], g_r0_x[1], g_r0_y[1], h_1_rr_x[1], h_1_rr_y[1],
+            inv_rr_platform_joint_offset_x[1], n_c1_rr_t[1], n_c1_rr_x[1], potential_t[1],
             potential_t_2[1], root_1_rr_t[1], rr_base_frame_xx[1], rr_base_frame_xy[1],
             rr_base_frame_yx[1], rr_base_frame_yy[1], rr_base_point_x[1], rr_base_point_y[1],
             rr_platform_joint_offset_x[1], rr_platform_point_x[1], rr_platform_point_y[1];
     /* legs of type rrr */
-    fivebar_offset_real J_1_rrr_zz[1], J_2_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1], b_rrr_r0_x[1],
-            b_rrr_r0_y[1], branch_1_rrr[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr_x[1], h_1_rrr_y[1],
-            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rrr_platform_joint_offset_x[1],
-            inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
-            rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
-            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
-            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
-            size_rrr[1];
+    fivebar_offset_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1],
+            Kd_1_rrr_t_3[1], b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1],
+            d_Gamma_1_rrr_y[1], d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x_2[1], g_r0_y_2[1],
+            h_1_rrr_x[1], h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1],
+            inv_rrr_platform_joint_offset_x[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
+            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
+            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
+            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
+            rrr_platform_point_y[1], size_rrr[1];
 } fivebar_offset_model;
 
 extern const fivebar_offset_params fivebar_offset_default_params;
@@ -129,13 +130,13 @@ extern const fivebar_offset_real fivebar_offset_HOME_Q[FIVEBAR_OFFSET_NJ];
    model is all NaN. */
 int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_model *model);
 
-/* Inertia matrix M. 127 mul, 89 add, 3 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 106 mul, 80 add, 3 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int fivebar_offset_M(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *M);
 size_t fivebar_offset_M_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *M, int *status);
 
-/* Velocity and gravity terms Z. 150 mul, 91 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 148 mul, 91 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_offset_Z(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *Z);
@@ -156,7 +157,7 @@ int fivebar_offset_Hk(const fivebar_offset_model *model, const fivebar_offset_re
 size_t fivebar_offset_Hk_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, fivebar_offset_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 228 mul, 152 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 205 mul, 143 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_offset_dynamics(const fivebar_offset_model *model, const fivebar_offset_real *X, const
     fivebar_offset_real *V, fivebar_offset_real *M, fivebar_offset_real *Z, fivebar_offset_real
@@ -193,7 +194,7 @@ int fivebar_offset_joint_rates(const fivebar_offset_model *model, const fivebar_
 size_t fivebar_offset_joint_rates_batch(const fivebar_offset_model *model, size_t n, const
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *rates, int *status);
 
-/* Accelerations of all joints. 101 mul, 55 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 100 mul, 55 add, 3 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int fivebar_offset_joint_accelerations(const fivebar_offset_model *model, const
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
@@ -202,7 +203,7 @@ size_t fivebar_offset_joint_accelerations_batch(const fivebar_offset_model *mode
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     fivebar_offset_real *accelerations, int *status);
 
-/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 171 mul, 107 add,
+/* Actuator forces tau and multipliers lambda for the acceleration A, by Eq. 3. 169 mul, 107 add,
    3 div, 2 sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV),
    wrench (NW, or NULL). Out: tau (NU), lambda (NC). */
 int fivebar_offset_inverse_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -213,7 +214,7 @@ size_t fivebar_offset_inverse_dynamics_batch(const fivebar_offset_model *model, 
     fivebar_offset_real *wrench, fivebar_offset_real *tau, fivebar_offset_real *lambda, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 228 mul, 152 add, 3 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 205 mul, 143 add, 3 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int fivebar_offset_forward_dynamics(const fivebar_offset_model *model, const fivebar_offset_real
@@ -232,7 +233,7 @@ size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *mo
     const fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
     fivebar_offset_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 145 mul, 80 add, 3 div, 2
+/* Force of each leg on the platform at its platform joint, base axes. 143 mul, 80 add, 3 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (2 x 3). */
 int fivebar_offset_leg_reactions(const fivebar_offset_model *model, const fivebar_offset_real *X,

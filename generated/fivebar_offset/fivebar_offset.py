@@ -328,14 +328,14 @@ def _prepare(p):
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x
-    n_c_rr_x = rr_platform_joint_offset_x/(sqrt(n_c_rr_t))
+    n_c1_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x
+    n_c1_rr_x = rr_platform_joint_offset_x/(sqrt(n_c1_rr_t))
     # (rr-G1) size of the leg, the measure of what is near singular
     size_rr_t = rr_base_point_x*rr_base_point_x + rr_base_point_y*rr_base_point_y
     size_rr_t_2 = (
     rr_platform_point_x*rr_platform_point_x + rr_platform_point_y*rr_platform_point_y
     )
-    size_rr_t_3 = n_c_rr_t + size_rr_t + size_rr_t_2
+    size_rr_t_3 = n_c1_rr_t + size_rr_t + size_rr_t_2
     size_rr = sqrt(size_rr_t_3)
     # (rr-K4) amplitude: off the manifold the nearest angle is taken
     root_1_rr_t = size_rr*size_rr*size_rr_t_3
@@ -347,8 +347,8 @@ def _prepare(p):
     J_1_rr_zz = rr_link1_inertia_zz + J_1_rr_t*rr_link1_mass
     # (rr-V4) reciprocal vector 1
     inv_rr_platform_joint_offset_x = 1.0/rr_platform_joint_offset_x
-    # (rr-N17) inertia of the leg at the connection point, without the mass gathered there
-    Q_rr_t = 0.5*J_1_rr_zz*inv_rr_platform_joint_offset_x*inv_rr_platform_joint_offset_x
+    # (rr-N12) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_rr_yy = J_1_rr_zz*inv_rr_platform_joint_offset_x*inv_rr_platform_joint_offset_x
     # (rr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = gravity_x*rr_base_frame_xx + gravity_y*rr_base_frame_yx
     g_r0_y = gravity_x*rr_base_frame_xy + gravity_y*rr_base_frame_yy
@@ -389,11 +389,22 @@ def _prepare(p):
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
     # (rrr-G5) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-V6) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
+    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_yy = (
+    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
+    )
     # (L2) first moment about the platform origin
     h_star_t_3 = rrr_link2_mass*rrr_platform_point_x
     h_star_t_4 = rrr_link2_mass*rrr_platform_point_y
@@ -441,14 +452,14 @@ def _prepare(p):
     legs = {
         "rr": {
             "J_1_rr_zz": np.broadcast_to(J_1_rr_zz, _rr),
-            "Q_rr_t": np.broadcast_to(Q_rr_t, _rr),
+            "d_G_rr_yy": np.broadcast_to(d_G_rr_yy, _rr),
             "g_r0_x": np.broadcast_to(g_r0_x, _rr),
             "g_r0_y": np.broadcast_to(g_r0_y, _rr),
             "h_1_rr_x": np.broadcast_to(h_1_rr_x, _rr),
             "h_1_rr_y": np.broadcast_to(h_1_rr_y, _rr),
             "inv_rr_platform_joint_offset_x": np.broadcast_to(inv_rr_platform_joint_offset_x, _rr),
-            "n_c_rr_t": np.broadcast_to(n_c_rr_t, _rr),
-            "n_c_rr_x": np.broadcast_to(n_c_rr_x, _rr),
+            "n_c1_rr_t": np.broadcast_to(n_c1_rr_t, _rr),
+            "n_c1_rr_x": np.broadcast_to(n_c1_rr_x, _rr),
             "potential_t": np.broadcast_to(potential_t, _rr),
             "potential_t_2": np.broadcast_to(potential_t_2, _rr),
             "root_1_rr_t": np.broadcast_to(root_1_rr_t, _rr),
@@ -465,11 +476,16 @@ def _prepare(p):
         "rrr": {
             "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
             "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Jc_1_rrr_zz": np.broadcast_to(Jc_1_rrr_zz, _rrr),
             "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
             "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
             "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
             "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
             "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "d_Gamma_1_rrr_t": np.broadcast_to(d_Gamma_1_rrr_t, _rrr),
+            "d_Gamma_1_rrr_y": np.broadcast_to(d_Gamma_1_rrr_y, _rrr),
+            "d_c_rrr_yy": np.broadcast_to(d_c_rrr_yy, _rrr),
+            "d_phi_2_rrr_t": np.broadcast_to(d_phi_2_rrr_t, _rrr),
             "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr),
             "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr),
             "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
@@ -646,7 +662,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 228 mul, 152 add, 3 div, 2 sqrt, 0 trig
+# dynamics: 205 mul, 143 add, 3 div, 2 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -688,8 +704,8 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, Q_rr_t, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x,
-        n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    J_1_rr_zz, d_G_rr_yy, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x,
+        n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -702,7 +718,7 @@ def _dynamics_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -711,15 +727,14 @@ def _dynamics_rr(c, k, x, s, f):
     # (rr-V4) reciprocal vector 1
     axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
     axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-    # (rr-N17) inertia of the leg at the connection point, without the mass gathered there
-    Q_rr_t_2 = Q_rr_t*axis_y_rr_axes1_in_base_x
-    Q_rr_t_3 = Q_rr_t*axis_y_rr_axes1_in_base_y
-    Q_rr_t_4 = 2.0*Q_rr_t_2*axis_y_rr_axes1_in_base_x
-    Q_rr_t_5 = Q_rr_t_2*axis_y_rr_axes1_in_base_y + Q_rr_t_3*axis_y_rr_axes1_in_base_x
-    Q_rr_t_6 = 2.0*Q_rr_t_3*axis_y_rr_axes1_in_base_y
+    # (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy
+    d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t
+    d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t
+    d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy
     # (M2) coupling block of M
-    M_ta_t = Q_rr_t_4*q_rr_in_base_y - Q_rr_t_5*q_rr_in_base_x
-    M_ta_t_2 = Q_rr_t_5*q_rr_in_base_y - Q_rr_t_6*q_rr_in_base_x
+    M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x
+    M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x
     # (M3) rotational block of M
     M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x
     # (rr-V1) velocity of the connection point
@@ -755,23 +770,25 @@ def _dynamics_rr(c, k, x, s, f):
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-    n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
+    n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x
+    n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x
     # (M10) moment of the column's unit force about the platform origin
-    Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
+    Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x
     # (M12) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
+    gamma_c1_rr_t = n_c1_rr_x*rel_rr_o_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
     return (
-    ok, (Q_rr_t_4, Q_rr_t_5, Q_rr_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_rr_t, U_rr_t_2, Z_a_t,),
-        (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c_rr_t_2, n_c_rr_t_3, Hk_a_1_rr_z, -gamma_c1_rr_t,),
+    ok, (d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t, U_rr_t, U_rr_t_2, Z_a_t,),
+        (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c1_rr_t_2, n_c1_rr_t_3, Hk_a_1_rr_z,
+        -gamma_c1_rr_t,),
     )
 
 
 def _dynamics_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
+    J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+        d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2, g_r0_y_2,
         h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
         inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
         rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
@@ -829,43 +846,31 @@ def _dynamics_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x
-    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x
+    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
     g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
@@ -884,13 +889,12 @@ def _dynamics_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -898,44 +902,44 @@ def _dynamics_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
     Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
     # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
     # (M9) moment of the column's unit force about the platform origin
-    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3
+    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (
     ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
-        U_rrr_in_base_y, Z_a_t_2,), (-w_1_rrr_t_3, w_1_rrr_t_4, H_a_1_rrr_z,),
+        U_rrr_in_base_y, Z_a_t_2,), (-w_1_rrr_t, w_1_rrr_t_2, H_a_1_rrr_z,),
     )
 
 
@@ -948,14 +952,14 @@ def _dynamics_after(c, s, t, f):
         total_rrr_yz, total_rrr_zz, total_rrr_x, total_rrr_y, total_rrr_z,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rr_xx + total_rrr_xx
+    M_tt_xx = m_star + total_rr_xx - total_rrr_xx
     M_tt_xy = total_rr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rr_yy + total_rrr_yy
+    M_tt_yy = m_star + total_rr_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = -h_star_in_base_y - total_rr_xz - total_rrr_xz
+    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz
     M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_rr_zz + total_rrr_zz - J_star_t_8
+    M_aa_zz = total_rr_zz - J_star_t_8 - total_rrr_zz
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rr_x + total_rrr_x
     Z_t_y = Z_p_y + total_rr_y + total_rrr_y
@@ -968,7 +972,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 127 mul, 89 add, 3 div, 2 sqrt, 0 trig
+# M: 106 mul, 80 add, 3 div, 2 sqrt, 0 trig
 def _M_before(c, X, f):
     sin = f.sin
     cos = f.cos
@@ -991,7 +995,7 @@ def _M_before(c, X, f):
 def _M_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    Q_rr_t, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    d_G_rr_yy, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1004,7 +1008,7 @@ def _M_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1013,29 +1017,29 @@ def _M_rr(c, k, x, s, f):
     # (rr-V4) reciprocal vector 1
     axis_y_rr_axes1_in_base_x = c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr
     axis_y_rr_axes1_in_base_y = c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr
-    # (rr-N17) inertia of the leg at the connection point, without the mass gathered there
-    Q_rr_t_2 = Q_rr_t*axis_y_rr_axes1_in_base_x
-    Q_rr_t_3 = Q_rr_t*axis_y_rr_axes1_in_base_y
-    Q_rr_t_4 = 2.0*Q_rr_t_2*axis_y_rr_axes1_in_base_x
-    Q_rr_t_5 = Q_rr_t_2*axis_y_rr_axes1_in_base_y + Q_rr_t_3*axis_y_rr_axes1_in_base_x
-    Q_rr_t_6 = 2.0*Q_rr_t_3*axis_y_rr_axes1_in_base_y
+    # (rr-N15) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rr_t = axis_y_rr_axes1_in_base_x*d_G_rr_yy
+    d_c_rr_t_2 = axis_y_rr_axes1_in_base_x*d_c_rr_t
+    d_c_rr_t_3 = axis_y_rr_axes1_in_base_y*d_c_rr_t
+    d_c_rr_t_4 = axis_y_rr_axes1_in_base_y*axis_y_rr_axes1_in_base_y*d_G_rr_yy
     # (M2) coupling block of M
-    M_ta_t = Q_rr_t_4*q_rr_in_base_y - Q_rr_t_5*q_rr_in_base_x
-    M_ta_t_2 = Q_rr_t_5*q_rr_in_base_y - Q_rr_t_6*q_rr_in_base_x
+    M_ta_t = d_c_rr_t_2*q_rr_in_base_y - d_c_rr_t_3*q_rr_in_base_x
+    M_ta_t_2 = d_c_rr_t_3*q_rr_in_base_y - d_c_rr_t_4*q_rr_in_base_x
     # (M3) rotational block of M
     M_aa_t = M_ta_t*q_rr_in_base_y - M_ta_t_2*q_rr_in_base_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
-    return (ok, (Q_rr_t_4, Q_rr_t_5, Q_rr_t_6, M_ta_t, M_ta_t_2, M_aa_t,), (),)
+    return (ok, (d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t,), (),)
 
 
 def _M_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, h_2_rrr_x, h_2_rrr_y,
-        inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+        d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+        inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+        rrr_platform_point_y, size_rrr,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rrr-K1) from the base point to the connection point
@@ -1071,6 +1075,7 @@ def _M_rrr(c, k, x, s, f):
     # (rrr-V2) from joint 1 to the connection point, along the links
     r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
     r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
     r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
     # (rrr-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr = 1.0/rho2_1_rrr
@@ -1087,45 +1092,31 @@ def _M_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x
-    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x
+    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,), (),)
 
@@ -1138,21 +1129,21 @@ def _M_after(c, s, t, f):
         total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rr_xx + total_rrr_xx
+    M_tt_xx = m_star + total_rr_xx - total_rrr_xx
     M_tt_xy = total_rr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rr_yy + total_rrr_yy
+    M_tt_yy = m_star + total_rr_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = -h_star_in_base_y - total_rr_xz - total_rrr_xz
+    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_rr_xz
     M_ta_yz = h_star_in_base_x - total_rr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_rr_zz + total_rrr_zz - J_star_t_8
+    M_aa_zz = total_rr_zz - J_star_t_8 - total_rrr_zz
     ok = True
     return (
     ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, M_ta_xz, M_ta_xz, M_ta_yz, M_ta_yz, M_aa_zz,),
     )
 
 
-# Z: 150 mul, 91 add, 3 div, 2 sqrt, 0 trig
+# Z: 148 mul, 91 add, 3 div, 2 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -1188,7 +1179,7 @@ def _Z_before(c, X, V, f):
 def _Z_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
+    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c1_rr_t,
         root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
         rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
         rr_platform_point_y,
@@ -1202,7 +1193,7 @@ def _Z_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1308,13 +1299,12 @@ def _Z_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -1322,31 +1312,31 @@ def _Z_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
@@ -1386,7 +1376,7 @@ def _H_before(c, X, f):
 def _H_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
+    inv_rr_platform_joint_offset_x, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
         rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1399,7 +1389,7 @@ def _H_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1500,7 +1490,7 @@ def _Hk_before(c, X, f):
 def _Hk_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1513,19 +1503,19 @@ def _Hk_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
     # (rr-K6) sine of the angle of joint 1 from its reference direction
     s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c_rr_t_2 = n_c_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr)
-    n_c_rr_t_3 = n_c_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
+    n_c1_rr_t_2 = n_c1_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr)
+    n_c1_rr_t_3 = n_c1_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
     # (M10) moment of the column's unit force about the platform origin
-    Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
+    Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
-    return (ok, (), (-n_c_rr_t_2, n_c_rr_t_3, Hk_a_1_rr_z,),)
+    return (ok, (), (-n_c1_rr_t_2, n_c1_rr_t_3, Hk_a_1_rr_z,),)
 
 
 # constraint_bias: 30 mul, 16 add, 1 div, 1 sqrt, 0 trig
@@ -1554,7 +1544,7 @@ def _constraint_bias_before(c, X, V, f):
 def _constraint_bias_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx,
+    inv_rr_platform_joint_offset_x, n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx,
         rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1567,7 +1557,7 @@ def _constraint_bias_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1589,12 +1579,12 @@ def _constraint_bias_rr(c, k, x, s, f):
         S_dot_rr_t_2*axis_y_rr_axes1_in_base_y*omega_z
     )
     # (M12) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
+    gamma_c1_rr_t = n_c1_rr_x*rel_rr_o_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
     return (ok, (), (-gamma_c1_rr_t,),)
 
 
-# required: 171 mul, 107 add, 3 div, 2 sqrt, 0 trig
+# required: 169 mul, 107 add, 3 div, 2 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -1646,8 +1636,8 @@ def _required_before(c, X, V, A, f):
 def _required_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-        n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c1_rr_t,
+        n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1660,7 +1650,7 @@ def _required_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1674,10 +1664,10 @@ def _required_rr(c, k, x, s, f):
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-    n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
+    n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x
+    n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x
     # (M10) moment of the column's unit force about the platform origin
-    Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
+    Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x
     # (rr-A2) acceleration of the connection point without its centripetal part
     a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
     a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
@@ -1699,7 +1689,7 @@ def _required_rr(c, k, x, s, f):
     R_a_t = c_rr_t_2*q_rr_in_base_x - c_rr_t*q_rr_in_base_y
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
     return (
-    ok, (c_rr_t, c_rr_t_2, R_a_t,), (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c_rr_t_2, n_c_rr_t_3,
+    ok, (c_rr_t, c_rr_t_2, R_a_t,), (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c1_rr_t_2, n_c1_rr_t_3,
         Hk_a_1_rr_z,),
     )
 
@@ -1781,13 +1771,12 @@ def _required_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -1807,7 +1796,7 @@ def _required_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -1817,22 +1806,22 @@ def _required_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
         h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
@@ -1880,9 +1869,9 @@ def _inverse_kinematics_rr(c, k, x, s, f):
     sqrt = f.sqrt
     atan2 = f.atan2
     (
-    n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
-        rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
-        rr_platform_point_y,
+    n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+        rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
+        rr_platform_point_x, rr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rr-K1) from the base point to the connection point
@@ -1891,7 +1880,7 @@ def _inverse_kinematics_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     # (rr-K7) displacement of joint 1
@@ -1977,7 +1966,7 @@ def _joint_rates_before(c, X, V, f):
 def _joint_rates_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
+    inv_rr_platform_joint_offset_x, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
         rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1990,7 +1979,7 @@ def _joint_rates_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2080,7 +2069,7 @@ def _joint_rates_rrr(c, k, x, s, f):
     return (ok, (), (-qd_1_rrr, qd_2_rrr,),)
 
 
-# joint_accelerations: 101 mul, 55 add, 3 div, 2 sqrt, 0 trig
+# joint_accelerations: 100 mul, 55 add, 3 div, 2 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2115,7 +2104,7 @@ def _joint_accelerations_before(c, X, V, A, f):
 def _joint_accelerations_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
+    inv_rr_platform_joint_offset_x, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
         rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2128,7 +2117,7 @@ def _joint_accelerations_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2224,10 +2213,12 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr_x = (
     -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
+        W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     )
     # (rrr-A2) acceleration of the connection point without its centripetal part
     a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
@@ -2241,7 +2232,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     )
     rel_rrr_y = (
     S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-        qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+        W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     )
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
@@ -2269,7 +2260,7 @@ def _constraints_before(c, X, f):
 def _constraints_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2280,12 +2271,12 @@ def _constraints_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     # (M11) distance by which the leg misses the connection point, along a direction left out
     phi_c1_rr_t = (
-    n_c_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
+    n_c1_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
         inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -
         rr_platform_joint_offset_x)
     )
@@ -2293,7 +2284,7 @@ def _constraints_rr(c, k, x, s, f):
     return (ok, (), (-phi_c1_rr_t,),)
 
 
-# legs: 145 mul, 80 add, 3 div, 2 sqrt, 0 trig
+# legs: 143 mul, 80 add, 3 div, 2 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2328,8 +2319,8 @@ def _legs_before(c, X, V, A, f):
 def _legs_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
-        n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c1_rr_t,
+        n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2342,7 +2333,7 @@ def _legs_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2354,8 +2345,8 @@ def _legs_rr(c, k, x, s, f):
     w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x
     w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
-    n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
+    n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x
+    n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x
     # (rr-A2) acceleration of the connection point without its centripetal part
     a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
     a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
@@ -2374,7 +2365,7 @@ def _legs_rr(c, k, x, s, f):
     c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x
     c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
-    return (ok, (), (-c_rr_t, -c_rr_t_2, w_1_rr_t, w_1_rr_t_2, -n_c_rr_t_2, n_c_rr_t_3,),)
+    return (ok, (), (-c_rr_t, -c_rr_t_2, w_1_rr_t, w_1_rr_t_2, -n_c1_rr_t_2, n_c1_rr_t_3,),)
 
 
 def _legs_rrr(c, k, x, s, f):
@@ -2454,13 +2445,12 @@ def _legs_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -2478,7 +2468,7 @@ def _legs_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -2488,28 +2478,28 @@ def _legs_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
         h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
     )
     c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    # (rrr-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
     c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
     c_true_rrr_in_base_x = (
@@ -2548,7 +2538,7 @@ def _potential_rr(c, k, x, s, f):
     sqrt = f.sqrt
     gravity_x, gravity_y = c
     (
-    h_1_rr_x, h_1_rr_y, n_c_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
+    h_1_rr_x, h_1_rr_y, n_c1_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
         rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2559,7 +2549,7 @@ def _potential_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2654,8 +2644,8 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 2)), ('Hk', (3, 1)), ('constraint_
             _dynamics_rr,
             "rr",
 (),
-('J_1_rr_zz', 'Q_rr_t', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y',
-            'inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t',
+('J_1_rr_zz', 'd_G_rr_yy', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y',
+            'inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t',
             'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy',
             'rr_base_point_x', 'rr_base_point_y', 'rr_platform_joint_offset_x',
             'rr_platform_point_x', 'rr_platform_point_y'),
@@ -2676,7 +2666,8 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 2)), ('Hk', (3, 1)), ('constraint_
             _dynamics_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x_2',
+('J_1_rrr_zz', 'J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr',
+            'd_Gamma_1_rrr_t', 'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'g_r0_x_2',
             'g_r0_y_2', 'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
             'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
             'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
@@ -2716,8 +2707,8 @@ arrays=(('M', (3, 3)),),
             _M_rr,
             "rr",
 (),
-('Q_rr_t', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
-            'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
+('d_G_rr_yy', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+            'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
 (0, 1, 2, 3),
@@ -2729,10 +2720,11 @@ arrays=(('M', (3, 3)),),
             _M_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'h_2_rrr_x',
-            'h_2_rrr_y', 'inv_Kd_1_rrr_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t',
-            'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+('J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'd_Gamma_1_rrr_t',
+            'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
             'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
             'size_rrr'),
 (),
@@ -2766,8 +2758,8 @@ arrays=(('Z', (3,)),),
             "rr",
 (),
 ('J_1_rr_zz', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y', 'inv_rr_platform_joint_offset_x',
-            'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
-            'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
+            'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+            'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
 (0, 1, 2, 3, 6),
@@ -2814,7 +2806,7 @@ arrays=(('H', (3, 2)),),
             _H_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -2861,7 +2853,7 @@ arrays=(('Hk', (3, 1)),),
             _Hk_rr,
             "rr",
 (),
-('n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+('n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -2889,7 +2881,7 @@ arrays=(('constraint_bias', (1,)),),
             _constraint_bias_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -2917,7 +2909,7 @@ arrays=(('required', (3,)), ('H', (3, 2)), ('Hk', (3, 1))),
             "rr",
 (),
 ('J_1_rr_zz', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y', 'inv_rr_platform_joint_offset_x',
-            'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+            'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -2974,7 +2966,7 @@ arrays=(('q', (3,)),),
             _inverse_kinematics_rr,
             "rr",
 (),
-('n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
+('n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
             'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -3016,7 +3008,7 @@ arrays=(('qd', (3,)),),
             _joint_rates_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -3061,7 +3053,7 @@ arrays=(('qdd', (3,)),),
             _joint_accelerations_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -3106,7 +3098,7 @@ arrays=(('constraints', (1,)),),
             _constraints_rr,
             "rr",
 (),
-('n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+('n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -3133,7 +3125,7 @@ arrays=(('leg_force', (2, 3)), ('drive', (2, 3)), ('constraint_direction', (1, 3
             "rr",
 (),
 ('J_1_rr_zz', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y', 'inv_rr_platform_joint_offset_x',
-            'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+            'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -3185,7 +3177,7 @@ arrays=(('potential', (1,)),),
             _potential_rr,
             "rr",
 ('gravity_x', 'gravity_y'),
-('h_1_rr_x', 'h_1_rr_y', 'n_c_rr_t', 'potential_t', 'potential_t_2', 'root_1_rr_t',
+('h_1_rr_x', 'h_1_rr_y', 'n_c1_rr_t', 'potential_t', 'potential_t_2', 'root_1_rr_t',
             'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy',
             'rr_base_point_x', 'rr_base_point_y', 'rr_platform_joint_offset_x',
             'rr_platform_point_x', 'rr_platform_point_y'),

@@ -429,11 +429,24 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
+            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
@@ -451,11 +464,16 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
+        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
         model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
         model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
         model->b_rrr_r0_x[leg] = b_rrr_r0_x;
         model->b_rrr_r0_y[leg] = b_rrr_r0_y;
         model->branch_1_rrr[leg] = branch_1_rrr;
+        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
+        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
+        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
+        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->h_1_rrr_x[leg] = h_1_rrr_x;
@@ -534,11 +552,24 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
         const real J_2_rrr2_t = rho_tip_2_rrr2_x*rho_tip_2_rrr2_x +
             rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y;
         const real J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass;
-        /* (rrr2-V6) reciprocal vector 2 */
-        const real inv_rrr2_platform_joint_offset_x = 1/rrr2_platform_joint_offset_x;
+        /* (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz;
         /* (rrr2-G5) first moment of link 2 about the connection point */
         const real h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass;
         const real h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass;
+        /* (rrr2-V6) reciprocal vector 2 */
+        const real inv_rrr2_platform_joint_offset_x = 1/rrr2_platform_joint_offset_x;
+        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr2_t = J_2_rrr2_zz*inv_rrr2_platform_joint_offset_x;
+        const real d_Gamma_1_rrr2_y = d_Gamma_1_rrr2_t + h_2_rrr2_x;
+        /* (rrr2-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real d_phi_2_rrr2_t = h_2_rrr2_y*inv_rrr2_platform_joint_offset_x;
+        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr2_yy = -d_Gamma_1_rrr2_y*inv_rrr2_platform_joint_offset_x -
+            h_2_rrr2_x*inv_rrr2_platform_joint_offset_x;
         /* (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x_2 = gravity_x*rrr2_base_frame_xx + gravity_y*rrr2_base_frame_yx;
@@ -556,11 +587,16 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
             rrr2_base_frame_yy*rrr2_base_point_y;
         model->J_1_rrr2_zz[leg] = J_1_rrr2_zz;
         model->J_2_rrr2_zz[leg] = J_2_rrr2_zz;
+        model->Jc_1_rrr2_zz[leg] = Jc_1_rrr2_zz;
         model->Kd_1_rrr2_t_2[leg] = Kd_1_rrr2_t_2;
         model->Kd_1_rrr2_t_3[leg] = Kd_1_rrr2_t_3;
         model->b_rrr2_r0_x[leg] = b_rrr2_r0_x;
         model->b_rrr2_r0_y[leg] = b_rrr2_r0_y;
         model->branch_1_rrr2[leg] = branch_1_rrr2;
+        model->d_Gamma_1_rrr2_t[leg] = d_Gamma_1_rrr2_t;
+        model->d_Gamma_1_rrr2_y[leg] = d_Gamma_1_rrr2_y;
+        model->d_c_rrr2_yy[leg] = d_c_rrr2_yy;
+        model->d_phi_2_rrr2_t[leg] = d_phi_2_rrr2_t;
         model->g_r0_x_2[leg] = g_r0_x_2;
         model->g_r0_y_2[leg] = g_r0_y_2;
         model->h_1_rrr2_x[leg] = h_1_rrr2_x;
@@ -606,7 +642,7 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 256 mul, 155 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[10][LANES];
 } dynamics_values;
@@ -649,9 +685,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real t_dot_y = s->t_dot_y[j];
         const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real h_1_rrr_x = m->h_1_rrr_x[i];
@@ -720,44 +761,33 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr;
@@ -769,43 +799,45 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
             axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = qdd_1_rrr_o +
-            inv_rrr_platform_joint_offset_x*(qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr -
+            inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
             qdd_1_rrr_o*r_1_rrr_r0_x);
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x -
             g_r1_y*s_2_rrr) - h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr);
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
             + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
@@ -816,8 +848,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
         o->sum[3][k] = U_rrr_in_base_x;  /* total_rrr_x */
         o->sum[4][k] = U_rrr_in_base_y;  /* total_rrr_y */
-        o->entry[0][k] = -w_1_rrr_t_3;
-        o->entry[1][k] = w_1_rrr_t_4;
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = w_2_rrr_in_base_x;
         o->entry[3][k] = w_2_rrr_in_base_y;
         o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
@@ -851,9 +883,14 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real t_dot_y = s->t_dot_y[j];
         const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
         const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
+        const real Jc_1_rrr2_zz = m->Jc_1_rrr2_zz[i];
         const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
         const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
         const real branch_1_rrr2 = m->branch_1_rrr2[i];
+        const real d_Gamma_1_rrr2_t = m->d_Gamma_1_rrr2_t[i];
+        const real d_Gamma_1_rrr2_y = m->d_Gamma_1_rrr2_y[i];
+        const real d_c_rrr2_yy = m->d_c_rrr2_yy[i];
+        const real d_phi_2_rrr2_t = m->d_phi_2_rrr2_t[i];
         const real g_r0_x_2 = m->g_r0_x_2[i];
         const real g_r0_y_2 = m->g_r0_y_2[i];
         const real h_1_rrr2_x = m->h_1_rrr2_x[i];
@@ -922,44 +959,33 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
             axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
         const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        const real w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2;
         /* (rrr2-V6) reciprocal vector 2 */
         const real w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x;
-        /* (rrr2-A17) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2;
-        const real d_alpha_2_rrr2_zy = inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 -
-            s_2_rrr2*w_1_rrr2_t;
-        /* (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y;
-        const real d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy;
-        /* (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 -
-            J_1_rrr2_zz*w_1_rrr2_t;
-        const real d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy -
-            d_mu_2_rrr2_zx*s_2_rrr2;
-        /* (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x;
+        const real d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr2_xx = d_alpha_2_rrr2_zx*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx - d_N_1_rrr2_zy*s_2_rrr2) -
-            d_mu_2_rrr2_zx*w_2_rrr2_t;
-        const real d_c_rrr2_xy = d_alpha_2_rrr2_zy*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy + d_N_1_rrr2_zx*s_2_rrr2) -
-            d_mu_2_rrr2_zy*w_2_rrr2_t;
-        /* (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr2_t = d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x +
-            d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x;
+        const real d_c_rrr2_xy = d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y -
+            d_Gamma_1_rrr2_y*w_2_rrr2_t;
+        /* (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr2_t = d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t -
+            inv_r_1_rrr2_r0_y) - d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t;
         const real Q_rrr2_t_2 = R(0.5)*Q_rrr2_t;
-        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
-            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
-        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
+        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
             axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy;
-        const real Q_rrr2_t_5 = 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx;
-        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y +
-            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        const real Q_rrr2_t_7 = 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx;
+        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
+            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
+        const real Q_rrr2_t_5 = d_c_rrr2_yy + 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
+            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
         /* (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2;
@@ -971,51 +997,53 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
             axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y;
-        /* (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y -
             g_r1_y_2*h_1_rrr2_x;
-        /* (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr2_o_z = qdd_1_rrr2_o +
-            inv_rrr2_platform_joint_offset_x*(qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2 -
+            inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
             qdd_1_rrr2_o*r_1_rrr2_r0_x);
-        /* (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr2_o_z = J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 -
             g_r1_y_2*s_2_rrr2) - h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2);
-        /* (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z;
-        /* (rrr2-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr2-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z;
-        /* (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr2_o_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z);
         const real c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x;
-        /* (rrr2-N34) velocity and gravity terms of the leg force */
+        /* (rrr2-N37) velocity and gravity terms of the leg force */
         const real U_rrr2_in_base_x = -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y -
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
         const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y;
         /* (rrr2-V5) reciprocal vector 1 */
-        const real w_1_rrr2_t_3 = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_4 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
+        const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
+        const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
         o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
         o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
         o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
         o->sum[3][k] = U_rrr2_in_base_x;  /* total_rrr2_x */
         o->sum[4][k] = U_rrr2_in_base_y;  /* total_rrr2_y */
-        o->entry[0][k] = -w_1_rrr2_t_3;
-        o->entry[1][k] = w_1_rrr2_t_4;
+        o->entry[0][k] = -w_1_rrr2_t;
+        o->entry[1][k] = w_1_rrr2_t_2;
         o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
             unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
         o->unreachable[k] = unless(disc_1_rrr2 >= 0);
@@ -1051,9 +1079,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real Z_p_y = m->Z_p_y;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx;
+        const real M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx;
         const real M_tt_xy = total_rrr2_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy;
+        const real M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy;
         /* (M3) translational part of Z */
         const real Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x;
         const real Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y;
@@ -1132,7 +1160,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 6, w, code, H);
 }
 
-/* ---- M: 160 mul, 99 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 124 mul, 83 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], sum[6][LANES];
 } M_values;
@@ -1164,12 +1192,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const size_t j = states*k;
         const real t_x = s->t_x[j];
         const real t_y = s->t_y[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real h_2_rrr_y = m->h_2_rrr_y[i];
         const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -1218,6 +1249,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
         const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
         const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr = 1/rho2_1_rrr;
@@ -1232,45 +1264,33 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -1296,12 +1316,15 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const size_t j = states*k;
         const real t_x = s->t_x[j];
         const real t_y = s->t_y[j];
-        const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
         const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
+        const real Jc_1_rrr2_zz = m->Jc_1_rrr2_zz[i];
         const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
         const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
         const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
+        const real d_Gamma_1_rrr2_t = m->d_Gamma_1_rrr2_t[i];
+        const real d_Gamma_1_rrr2_y = m->d_Gamma_1_rrr2_y[i];
+        const real d_c_rrr2_yy = m->d_c_rrr2_yy[i];
+        const real d_phi_2_rrr2_t = m->d_phi_2_rrr2_t[i];
         const real h_2_rrr2_y = m->h_2_rrr2_y[i];
         const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
         const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
@@ -1350,6 +1373,7 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         /* (rrr2-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
         const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
+        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
         const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
         /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
@@ -1364,46 +1388,33 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
             axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
         const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        const real w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2;
         /* (rrr2-V6) reciprocal vector 2 */
-        const real w_2_rrr2_t =
-            inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*(c_2_rrr2*r_1_rrr2_x +
-            r_1_rrr2_t*s_2_rrr2);
-        /* (rrr2-A17) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2;
-        const real d_alpha_2_rrr2_zy = inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 -
-            s_2_rrr2*w_1_rrr2_t;
-        /* (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y;
-        const real d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy;
-        /* (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 -
-            J_1_rrr2_zz*w_1_rrr2_t;
-        const real d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy -
-            d_mu_2_rrr2_zx*s_2_rrr2;
-        /* (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x;
+        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x;
+        const real d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr2_xx = d_alpha_2_rrr2_zx*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx - d_N_1_rrr2_zy*s_2_rrr2) -
-            d_mu_2_rrr2_zx*w_2_rrr2_t;
-        const real d_c_rrr2_xy = d_alpha_2_rrr2_zy*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy + d_N_1_rrr2_zx*s_2_rrr2) -
-            d_mu_2_rrr2_zy*w_2_rrr2_t;
-        /* (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr2_t = d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x +
-            d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x;
+        const real d_c_rrr2_xy = d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y -
+            d_Gamma_1_rrr2_y*w_2_rrr2_t;
+        /* (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr2_t = d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t -
+            inv_r_1_rrr2_r0_y) - d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t;
         const real Q_rrr2_t_2 = R(0.5)*Q_rrr2_t;
-        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
-            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
-        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
+        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
             axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy;
-        const real Q_rrr2_t_5 = 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx;
-        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y +
-            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        const real Q_rrr2_t_7 = 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx;
+        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
+            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
+        const real Q_rrr2_t_5 = d_c_rrr2_yy + 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
+            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
         o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
         o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
         o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
@@ -1432,9 +1443,9 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_rrr2_yy = s->sum[5][k];
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx;
+        const real M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx;
         const real M_tt_xy = total_rrr2_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy;
+        const real M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[2*w + k] = M_tt_xy;
@@ -1501,7 +1512,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 4, w, code, M);
 }
 
-/* ---- Z: 170 mul, 96 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 166 mul, 96 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[4][LANES];
 } Z_values;
@@ -1626,36 +1637,38 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
             axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = qdd_1_rrr_o +
-            inv_rrr_platform_joint_offset_x*(qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr -
+            inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
             qdd_1_rrr_o*r_1_rrr_r0_x);
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x -
             g_r1_y*s_2_rrr) - h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr);
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -1770,37 +1783,39 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
             axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y;
-        /* (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y -
             g_r1_y_2*h_1_rrr2_x;
-        /* (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr2_o_z = qdd_1_rrr2_o +
-            inv_rrr2_platform_joint_offset_x*(qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2 -
+            inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
             qdd_1_rrr2_o*r_1_rrr2_r0_x);
-        /* (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr2_o_z = J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 -
             g_r1_y_2*s_2_rrr2) - h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2);
-        /* (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z;
-        /* (rrr2-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr2-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z;
-        /* (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr2_o_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z);
         const real c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x;
-        /* (rrr2-N34) velocity and gravity terms of the leg force */
+        /* (rrr2-N37) velocity and gravity terms of the leg force */
         const real U_rrr2_in_base_x = -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y -
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
         const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
@@ -2158,7 +2173,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 6, w, code, H);
 }
 
-/* ---- required: 190 mul, 112 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 186 mul, 112 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
         f_p_x[LANES], f_p_y[LANES], sum[4][LANES];
@@ -2305,11 +2320,13 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
             axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -2325,7 +2342,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
         /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A7) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -2333,22 +2350,22 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr
             - h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr);
-        /* (rrr-A16) angular acceleration of link 2 */
+        /* (rrr-A15) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
@@ -2476,11 +2493,13 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
             axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-V5) reciprocal vector 1 */
         const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
         const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
@@ -2491,8 +2510,7 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrr2_axes2_in_base_y*t_ddot_y;
         /* (rrr2-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_y = S_ddot_rrr2_tip_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+        const real rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A7) acceleration of joint 1 */
         const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
         /* (rrr2-N3) acceleration of the reference point of link 2, less gravity */
@@ -2500,22 +2518,22 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrr2_axes2_in_base_y*gravity_x;
         const real acc_2_rrr2_y = S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
             axis_y_rrr2_axes2_in_base_y*gravity_y;
-        /* (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr2_z = h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) -
             J_1_rrr2_zz*qdd_1_rrr2 - h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2);
-        /* (rrr2-A16) angular acceleration of link 2 */
+        /* (rrr2-A15) angular acceleration of link 2 */
         const real alpha_2_rrr2_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
             qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2;
-        /* (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x -
             acc_2_rrr2_x*h_2_rrr2_y;
-        /* (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z;
-        /* (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z;
-        /* (rrr2-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr2-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr2_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z);
@@ -3100,7 +3118,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 4, w, code, rates);
 }
 
-/* ---- joint_accelerations: 126 mul, 62 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
 } joint_accelerations_values;
@@ -3224,14 +3242,16 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
             axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_rrr_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
         const real rel_rrr_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+            axis_y_rrr_axes2_in_base_y*t_ddot_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A7) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
@@ -3340,15 +3360,16 @@ INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t 
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
             axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr2_x = axis_y_rrr2_axes2_in_base_y*t_ddot_x - bias_rrr2_x -
             axis_y_rrr2_axes2_in_base_x*t_ddot_y;
         const real rel_rrr2_y = axis_y_rrr2_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr2_axes2_in_base_y*t_ddot_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+            axis_y_rrr2_axes2_in_base_y*t_ddot_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A7) acceleration of joint 1 */
         const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
         const real qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
@@ -3418,7 +3439,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 4, w, code, accelerations);
 }
 
-/* ---- legs: 192 mul, 106 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 188 mul, 106 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
 } legs_values;
@@ -3553,11 +3574,13 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
             axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -3573,7 +3596,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
         /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A7) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -3581,27 +3604,27 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr
             - h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr);
-        /* (rrr-A16) angular acceleration of link 2 */
+        /* (rrr-A15) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
         const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
         const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
         const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
@@ -3730,11 +3753,13 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
             axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-V5) reciprocal vector 1 */
         const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
         const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
@@ -3745,8 +3770,7 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
             axis_y_rrr2_axes2_in_base_y*t_ddot_y;
         /* (rrr2-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_y = S_ddot_rrr2_tip_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+        const real rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A7) acceleration of joint 1 */
         const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
         /* (rrr2-N3) acceleration of the reference point of link 2, less gravity */
@@ -3754,27 +3778,27 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
             axis_y_rrr2_axes2_in_base_y*gravity_x;
         const real acc_2_rrr2_y = S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
             axis_y_rrr2_axes2_in_base_y*gravity_y;
-        /* (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr2_z = h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) -
             J_1_rrr2_zz*qdd_1_rrr2 - h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2);
-        /* (rrr2-A16) angular acceleration of link 2 */
+        /* (rrr2-A15) angular acceleration of link 2 */
         const real alpha_2_rrr2_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
             qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2;
-        /* (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x -
             acc_2_rrr2_x*h_2_rrr2_y;
-        /* (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z;
-        /* (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z;
-        /* (rrr2-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr2-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr2_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z);
         const real c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x;
-        /* (rrr2-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr2-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass;
         const real c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass;
         const real c_true_rrr2_in_base_x = axis_y_rrr2_axes2_in_base_x*c_true_rrr2_y +

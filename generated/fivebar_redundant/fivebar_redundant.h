@@ -111,8 +111,9 @@ typedef struct {
 typedef struct {
     fivebar_redundant_real Z_p_x, Z_p_y, gravity_x, gravity_y, h_star_x, h_star_y, m_star;
     /* legs of type rrr */
-    fivebar_redundant_real J_1_rrr_zz[1], J_2_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
-            b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1],
+    fivebar_redundant_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1],
+            Kd_1_rrr_t_3[1], b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1],
+            d_Gamma_1_rrr_y[1], d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1],
             h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1],
             inv_rrr_platform_joint_offset_x[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
             rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
@@ -120,9 +121,10 @@ typedef struct {
             rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
             rrr_platform_point_y[1], size_rrr[1];
     /* legs of type rrr2 */
-    fivebar_redundant_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Kd_1_rrr2_t_2[1], Kd_1_rrr2_t_3[1],
-            b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr2_x[1],
-            h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
+    fivebar_redundant_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Jc_1_rrr2_zz[1], Kd_1_rrr2_t_2[1],
+            Kd_1_rrr2_t_3[1], b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], d_Gamma_1_rrr2_t[1],
+            d_Gamma_1_rrr2_y[1], d_c_rrr2_yy[1], d_phi_2_rrr2_t[1], g_r0_x_2[1], g_r0_y_2[1],
+            h_1_rrr2_x[1], h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
             inv_rrr2_platform_joint_offset_x[1], inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1],
             rrr2_base_frame_xx[1], rrr2_base_frame_xy[1], rrr2_base_frame_yx[1],
             rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
@@ -140,13 +142,13 @@ extern const fivebar_redundant_real fivebar_redundant_HOME_Q[FIVEBAR_REDUNDANT_N
    model is all NaN. */
 int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_redundant_model *model);
 
-/* Inertia matrix M. 160 mul, 99 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 124 mul, 83 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int fivebar_redundant_M(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
     fivebar_redundant_real *M);
 size_t fivebar_redundant_M_batch(const fivebar_redundant_model *model, size_t n, const
     fivebar_redundant_real *X, fivebar_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 170 mul, 96 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 166 mul, 96 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_redundant_Z(const fivebar_redundant_model *model, const fivebar_redundant_real *X,
     const fivebar_redundant_real *V, fivebar_redundant_real *Z);
@@ -161,7 +163,7 @@ int fivebar_redundant_H(const fivebar_redundant_model *model, const fivebar_redu
 size_t fivebar_redundant_H_batch(const fivebar_redundant_model *model, size_t n, const
     fivebar_redundant_real *X, fivebar_redundant_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 256 mul, 155 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 216 mul, 139 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_redundant_dynamics(const fivebar_redundant_model *model, const fivebar_redundant_real
     *X, const fivebar_redundant_real *V, fivebar_redundant_real *M, fivebar_redundant_real *Z,
@@ -185,7 +187,7 @@ size_t fivebar_redundant_joint_rates_batch(const fivebar_redundant_model *model,
     fivebar_redundant_real *X, const fivebar_redundant_real *V, fivebar_redundant_real *rates, int
     *status);
 
-/* Accelerations of all joints. 126 mul, 62 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 124 mul, 62 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int fivebar_redundant_joint_accelerations(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
@@ -194,7 +196,7 @@ size_t fivebar_redundant_joint_accelerations_batch(const fivebar_redundant_model
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
     *A, fivebar_redundant_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3, of least norm. 190 mul, 112 add, 4 div, 2
+/* Actuator forces tau for the acceleration A, by Eq. 3, of least norm. 186 mul, 112 add, 4 div, 2
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench
    (NW, or NULL). Out: tau (NU). */
 int fivebar_redundant_inverse_dynamics(const fivebar_redundant_model *model, const
@@ -204,7 +206,7 @@ size_t fivebar_redundant_inverse_dynamics_batch(const fivebar_redundant_model *m
     const fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real
     *A, const fivebar_redundant_real *wrench, fivebar_redundant_real *tau, int *status);
 
-/* Actuator forces tau of least sum of weights tau^2. 190 mul, 112 add, 4 div, 2 sqrt, 0 trig; the
+/* Actuator forces tau of least sum of weights tau^2. 186 mul, 112 add, 4 div, 2 sqrt, 0 trig; the
    solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL),
    weights (NU, positive). Out: tau (NU). */
 int fivebar_redundant_inverse_dynamics_weighted(const fivebar_redundant_model *model, const
@@ -216,7 +218,7 @@ size_t fivebar_redundant_inverse_dynamics_weighted_batch(const fivebar_redundant
     fivebar_redundant_real *A, const fivebar_redundant_real *wrench, const fivebar_redundant_real
     *weights, fivebar_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 256 mul, 155 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 216 mul, 139 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int fivebar_redundant_forward_dynamics(const fivebar_redundant_model *model, const
@@ -241,7 +243,7 @@ size_t fivebar_redundant_complete_acceleration_batch(const fivebar_redundant_mod
     n, const fivebar_redundant_real *X, const fivebar_redundant_real *V, const
     fivebar_redundant_real *A, fivebar_redundant_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 192 mul, 106 add, 4 div, 2
+/* Force of each leg on the platform at its platform joint, base axes. 188 mul, 106 add, 4 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (2 x 3). */
 int fivebar_redundant_leg_reactions(const fivebar_redundant_model *model, const

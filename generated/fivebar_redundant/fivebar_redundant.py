@@ -372,11 +372,22 @@ def _prepare(p):
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
     # (rrr-G5) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-V6) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
+    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_yy = (
+    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
+    )
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
     g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
@@ -424,11 +435,23 @@ def _prepare(p):
     rho_tip_2_rrr2_x*rho_tip_2_rrr2_x + rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y
     )
     J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass
-    # (rrr2-V6) reciprocal vector 2
-    inv_rrr2_platform_joint_offset_x = 1.0/rrr2_platform_joint_offset_x
+    # (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz
     # (rrr2-G5) first moment of link 2 about the connection point
     h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass
     h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass
+    # (rrr2-V6) reciprocal vector 2
+    inv_rrr2_platform_joint_offset_x = 1.0/rrr2_platform_joint_offset_x
+    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr2_t = J_2_rrr2_zz*inv_rrr2_platform_joint_offset_x
+    d_Gamma_1_rrr2_y = d_Gamma_1_rrr2_t + h_2_rrr2_x
+    # (rrr2-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr2_t = h_2_rrr2_y*inv_rrr2_platform_joint_offset_x
+    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr2_yy = (
+    -d_Gamma_1_rrr2_y*inv_rrr2_platform_joint_offset_x -
+        h_2_rrr2_x*inv_rrr2_platform_joint_offset_x
+    )
     # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x_2 = gravity_x*rrr2_base_frame_xx + gravity_y*rrr2_base_frame_yx
     g_r0_y_2 = gravity_x*rrr2_base_frame_xy + gravity_y*rrr2_base_frame_yy
@@ -465,11 +488,16 @@ def _prepare(p):
         "rrr": {
             "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
             "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Jc_1_rrr_zz": np.broadcast_to(Jc_1_rrr_zz, _rrr),
             "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
             "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
             "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
             "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
             "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "d_Gamma_1_rrr_t": np.broadcast_to(d_Gamma_1_rrr_t, _rrr),
+            "d_Gamma_1_rrr_y": np.broadcast_to(d_Gamma_1_rrr_y, _rrr),
+            "d_c_rrr_yy": np.broadcast_to(d_c_rrr_yy, _rrr),
+            "d_phi_2_rrr_t": np.broadcast_to(d_phi_2_rrr_t, _rrr),
             "g_r0_x": np.broadcast_to(g_r0_x, _rrr),
             "g_r0_y": np.broadcast_to(g_r0_y, _rrr),
             "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
@@ -497,11 +525,16 @@ def _prepare(p):
         "rrr2": {
             "J_1_rrr2_zz": np.broadcast_to(J_1_rrr2_zz, _rrr2),
             "J_2_rrr2_zz": np.broadcast_to(J_2_rrr2_zz, _rrr2),
+            "Jc_1_rrr2_zz": np.broadcast_to(Jc_1_rrr2_zz, _rrr2),
             "Kd_1_rrr2_t_2": np.broadcast_to(Kd_1_rrr2_t_2, _rrr2),
             "Kd_1_rrr2_t_3": np.broadcast_to(Kd_1_rrr2_t_3, _rrr2),
             "b_rrr2_r0_x": np.broadcast_to(b_rrr2_r0_x, _rrr2),
             "b_rrr2_r0_y": np.broadcast_to(b_rrr2_r0_y, _rrr2),
             "branch_1_rrr2": np.broadcast_to(branch_1_rrr2, _rrr2),
+            "d_Gamma_1_rrr2_t": np.broadcast_to(d_Gamma_1_rrr2_t, _rrr2),
+            "d_Gamma_1_rrr2_y": np.broadcast_to(d_Gamma_1_rrr2_y, _rrr2),
+            "d_c_rrr2_yy": np.broadcast_to(d_c_rrr2_yy, _rrr2),
+            "d_phi_2_rrr2_t": np.broadcast_to(d_phi_2_rrr2_t, _rrr2),
             "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr2),
             "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr2),
             "h_1_rrr2_x": np.broadcast_to(h_1_rrr2_x, _rrr2),
@@ -678,7 +711,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 256 mul, 155 add, 4 div, 2 sqrt, 0 trig
+# dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -697,7 +730,8 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y, h_1_rrr_x,
+    J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+        d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y, h_1_rrr_x,
         h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
         inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
         rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
@@ -752,38 +786,26 @@ def _dynamics_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
     g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
@@ -796,43 +818,42 @@ def _dynamics_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
-    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
-    qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr -
+    qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
         qdd_1_rrr_o*r_1_rrr_r0_x)
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = (
     J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
         h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
     )
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_in_base_x = (
     axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
@@ -844,15 +865,16 @@ def _dynamics_rrr(c, k, x, s, f):
     )
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (
-    ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, U_rrr_in_base_x, U_rrr_in_base_y,), (-w_1_rrr_t_3,
-        w_1_rrr_t_4, w_2_rrr_in_base_x, w_2_rrr_in_base_y,),
+    ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, U_rrr_in_base_x, U_rrr_in_base_y,), (-w_1_rrr_t,
+        w_1_rrr_t_2, w_2_rrr_in_base_x, w_2_rrr_in_base_y,),
     )
 
 
 def _dynamics_rrr2(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
+    J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
+        d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2, g_r0_y_2,
         h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
         inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
         rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
@@ -908,40 +930,28 @@ def _dynamics_rrr2(c, k, x, s, f):
     axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
     )
     inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2
     # (rrr2-V6) reciprocal vector 2
     w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
-    # (rrr2-A17) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2
-    d_alpha_2_rrr2_zy = (
-    inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 - s_2_rrr2*w_1_rrr2_t
-    )
-    # (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y
-    d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy
-    # (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 - J_1_rrr2_zz*w_1_rrr2_t
-    d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy - d_mu_2_rrr2_zx*s_2_rrr2
-    # (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_xx = (
-    d_alpha_2_rrr2_zx*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx -
-        d_N_1_rrr2_zy*s_2_rrr2) - d_mu_2_rrr2_zx*w_2_rrr2_t
-    )
+    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
+    d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_rrr2_xy = (
-    d_alpha_2_rrr2_zy*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy +
-        d_N_1_rrr2_zx*s_2_rrr2) - d_mu_2_rrr2_zy*w_2_rrr2_t
+    d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
     )
-    # (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr2_t = (
-    d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x + d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x
+    d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) - d_c_rrr2_yy
+        - d_Gamma_2_rrr2_x*w_2_rrr2_t
     )
     Q_rrr2_t_2 = 0.5*Q_rrr2_t
-    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-    Q_rrr2_t_5 = 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx
-    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-    Q_rrr2_t_7 = 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx
+    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
+    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
+    Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
     # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r1_x_2 = c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2
     g_r1_y_2 = c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2
@@ -954,39 +964,39 @@ def _dynamics_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
         axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A4) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
-    # (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
-    # (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr2_o_z = (
-    qdd_1_rrr2_o +
-        inv_rrr2_platform_joint_offset_x*(qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2 -
+    qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
         qdd_1_rrr2_o*r_1_rrr2_r0_x)
     )
-    # (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_o_z = (
     J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
         h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
     )
-    # (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-    # (rrr2-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-    # (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_o_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
         inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
     )
     c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-    # (rrr2-N34) velocity and gravity terms of the leg force
+    # (rrr2-N37) velocity and gravity terms of the leg force
     U_rrr2_in_base_x = (
     -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
     )
@@ -994,12 +1004,12 @@ def _dynamics_rrr2(c, k, x, s, f):
     axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y
     )
     # (rrr2-V5) reciprocal vector 1
-    w_1_rrr2_t_3 = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_4 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
+    w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
+    w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
     ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
     return (
-    ok, (Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, U_rrr2_in_base_x, U_rrr2_in_base_y,), (-w_1_rrr2_t_3,
-        w_1_rrr2_t_4,),
+    ok, (Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, U_rrr2_in_base_x, U_rrr2_in_base_y,), (-w_1_rrr2_t,
+        w_1_rrr2_t_2,),
     )
 
 
@@ -1010,9 +1020,9 @@ def _dynamics_after(c, s, t, f):
         total_rrr2_xy, total_rrr2_yy, total_rrr2_x, total_rrr2_y,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx
+    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
     M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy
+    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
     # (M3) translational part of Z
     Z_t_x = total_rrr2_x + total_rrr_x - Z_p_x
     Z_t_y = total_rrr2_y + total_rrr_y - Z_p_y
@@ -1020,7 +1030,7 @@ def _dynamics_after(c, s, t, f):
     return (ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, Z_t_x, Z_t_y,),)
 
 
-# M: 160 mul, 99 add, 4 div, 2 sqrt, 0 trig
+# M: 124 mul, 83 add, 4 div, 2 sqrt, 0 trig
 def _M_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1034,11 +1044,12 @@ def _M_before(c, X, f):
 def _M_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, h_2_rrr_x, h_2_rrr_y,
-        inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+        d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+        inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+        rrr_platform_point_y, size_rrr,
     ) = k
     t_x, t_y = s
     # (rrr-K1) from the base point to the connection point
@@ -1072,6 +1083,7 @@ def _M_rrr(c, k, x, s, f):
     # (rrr-V2) from joint 1 to the connection point, along the links
     r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
     r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
     r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
     # (rrr-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr = 1.0/rho2_1_rrr
@@ -1088,40 +1100,26 @@ def _M_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7,), (),)
 
@@ -1129,10 +1127,11 @@ def _M_rrr(c, k, x, s, f):
 def _M_rrr2(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, h_2_rrr2_x, h_2_rrr2_y,
-        inv_Kd_1_rrr2_t_5, inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-        rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy,
-        rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+    J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
+        d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
         rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
     ) = k
     t_x, t_y = s
@@ -1167,6 +1166,7 @@ def _M_rrr2(c, k, x, s, f):
     # (rrr2-V2) from joint 1 to the connection point, along the links
     r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
     r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
     r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
     # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
@@ -1183,42 +1183,28 @@ def _M_rrr2(c, k, x, s, f):
     axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
     )
     inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2
     # (rrr2-V6) reciprocal vector 2
-    w_2_rrr2_t = (
-    inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*(c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2)
-    )
-    # (rrr2-A17) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2
-    d_alpha_2_rrr2_zy = (
-    inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 - s_2_rrr2*w_1_rrr2_t
-    )
-    # (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y
-    d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy
-    # (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 - J_1_rrr2_zz*w_1_rrr2_t
-    d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy - d_mu_2_rrr2_zx*s_2_rrr2
-    # (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_xx = (
-    d_alpha_2_rrr2_zx*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx -
-        d_N_1_rrr2_zy*s_2_rrr2) - d_mu_2_rrr2_zx*w_2_rrr2_t
-    )
+    w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
+    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
+    d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_rrr2_xy = (
-    d_alpha_2_rrr2_zy*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy +
-        d_N_1_rrr2_zx*s_2_rrr2) - d_mu_2_rrr2_zy*w_2_rrr2_t
+    d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
     )
-    # (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr2_t = (
-    d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x + d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x
+    d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) - d_c_rrr2_yy
+        - d_Gamma_2_rrr2_x*w_2_rrr2_t
     )
     Q_rrr2_t_2 = 0.5*Q_rrr2_t
-    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-    Q_rrr2_t_5 = 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx
-    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-    Q_rrr2_t_7 = 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx
+    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
+    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
+    Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
     ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
     return (ok, (Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7,), (),)
 
@@ -1227,14 +1213,14 @@ def _M_after(c, s, t, f):
     m_star, = c
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr2_xx, total_rrr2_xy, total_rrr2_yy = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx
+    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
     M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy
+    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
     ok = True
     return (ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy,),)
 
 
-# Z: 170 mul, 96 add, 4 div, 2 sqrt, 0 trig
+# Z: 166 mul, 96 add, 4 div, 2 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1320,38 +1306,37 @@ def _Z_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = bias_rrr_x*inv_r_1_rrr_r0_y
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = J_1_rrr_zz*qdd_1_rrr_o + g_r1_x*h_1_rrr_y - g_r1_y*h_1_rrr_x
-    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
-    qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr -
+    qdd_1_rrr_o + inv_rrr_platform_joint_offset_x*(W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr -
         qdd_1_rrr_o*r_1_rrr_r0_x)
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = (
     J_2_rrr_zz*alpha_2_rrr_o_z + h_2_rrr_y*(c_2_rrr*g_r1_x - g_r1_y*s_2_rrr) -
         h_2_rrr_x*(c_2_rrr*g_r1_y + g_r1_x*s_2_rrr)
     )
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
@@ -1429,39 +1414,39 @@ def _Z_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
         axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A4) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr2_o = bias_rrr2_x*inv_r_1_rrr2_r0_y
-    # (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_o_z = J_1_rrr2_zz*qdd_1_rrr2_o + g_r1_x_2*h_1_rrr2_y - g_r1_y_2*h_1_rrr2_x
-    # (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr2-A17) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr2_o_z = (
-    qdd_1_rrr2_o +
-        inv_rrr2_platform_joint_offset_x*(qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2 -
+    qdd_1_rrr2_o + inv_rrr2_platform_joint_offset_x*(W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2 -
         qdd_1_rrr2_o*r_1_rrr2_r0_x)
     )
-    # (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_o_z = (
     J_2_rrr2_zz*alpha_2_rrr2_o_z + h_2_rrr2_y*(c_2_rrr2*g_r1_x_2 - g_r1_y_2*s_2_rrr2) -
         h_2_rrr2_x*(c_2_rrr2*g_r1_y_2 + g_r1_x_2*s_2_rrr2)
     )
-    # (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-    # (rrr2-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-    # (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_o_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
         inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
     )
     c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-    # (rrr2-N34) velocity and gravity terms of the leg force
+    # (rrr2-N37) velocity and gravity terms of the leg force
     U_rrr2_in_base_x = (
     -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
     )
@@ -1630,7 +1615,7 @@ def _H_rrr2(c, k, x, s, f):
     return (ok, (), (-w_1_rrr2_t, w_1_rrr2_t_2,),)
 
 
-# required: 190 mul, 112 add, 4 div, 2 sqrt, 0 trig
+# required: 186 mul, 112 add, 4 div, 2 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     gravity_x, gravity_y, m_star = c
     X_0 = X[0]
@@ -1728,13 +1713,12 @@ def _required_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -1752,7 +1736,7 @@ def _required_rrr(c, k, x, s, f):
     S_ddot_rrr_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
     # (rrr-A5) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A7) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -1762,22 +1746,22 @@ def _required_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y
         - g_r0_x*s_1_rrr)
     )
-    # (rrr-A16) angular acceleration of link 2
+    # (rrr-A15) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
@@ -1861,12 +1845,13 @@ def _required_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
         axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A4) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-V5) reciprocal vector 1
     w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
@@ -1880,7 +1865,7 @@ def _required_rrr2(c, k, x, s, f):
     )
     # (rrr2-A5) acceleration of the connection point left to the joint accelerations
     rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_y = S_ddot_rrr2_tip_y + qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+    rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     # (rrr2-A7) acceleration of joint 1
     qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
     # (rrr2-N3) acceleration of the reference point of link 2, less gravity
@@ -1892,22 +1877,22 @@ def _required_rrr2(c, k, x, s, f):
     S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
         axis_y_rrr2_axes2_in_base_y*gravity_y
     )
-    # (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_z = (
     h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
         h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
     )
-    # (rrr2-A16) angular acceleration of link 2
+    # (rrr2-A15) angular acceleration of link 2
     alpha_2_rrr2_z = (
     inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
     )
-    # (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-    # (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-    # (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-    # (rrr2-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y - inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x
         - N_1_rrr2_z)
@@ -2188,7 +2173,7 @@ def _joint_rates_rrr2(c, k, x, s, f):
     return (ok, (), (-qd_1_rrr2, qd_2_rrr2,),)
 
 
-# joint_accelerations: 126 mul, 62 add, 4 div, 2 sqrt, 0 trig
+# joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2275,10 +2260,12 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
     bias_rrr_x = (
     -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
+        W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     )
     # (rrr-A5) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = (
@@ -2286,7 +2273,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     )
     rel_rrr_y = (
     axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y +
-        qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+        W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     )
     # (rrr-A7) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
@@ -2362,10 +2349,12 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
         axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-A4) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
     -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+        W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-A5) acceleration of the connection point left to the joint accelerations
     rel_rrr2_x = (
@@ -2373,7 +2362,7 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     )
     rel_rrr2_y = (
     axis_y_rrr2_axes2_in_base_x*t_ddot_x + axis_y_rrr2_axes2_in_base_y*t_ddot_y +
-        qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+        W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     )
     # (rrr2-A7) acceleration of joint 1
     qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
@@ -2382,7 +2371,7 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     return (ok, (), (-qdd_1_rrr2, qdd_2_rrr2,),)
 
 
-# legs: 192 mul, 106 add, 4 div, 2 sqrt, 0 trig
+# legs: 188 mul, 106 add, 4 div, 2 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2474,13 +2463,12 @@ def _legs_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -2498,7 +2486,7 @@ def _legs_rrr(c, k, x, s, f):
     S_ddot_rrr_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
     # (rrr-A5) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A7) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -2508,28 +2496,28 @@ def _legs_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y
         - g_r0_x*s_1_rrr)
     )
-    # (rrr-A16) angular acceleration of link 2
+    # (rrr-A15) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
     )
     c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    # (rrr-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
     c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
     c_true_rrr_in_base_x = (
@@ -2614,12 +2602,13 @@ def _legs_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(axis_y_rrr2_axes2_in_base_x*t_dot_x +
         axis_y_rrr2_axes2_in_base_y*t_dot_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A4) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-V5) reciprocal vector 1
     w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
@@ -2633,7 +2622,7 @@ def _legs_rrr2(c, k, x, s, f):
     )
     # (rrr2-A5) acceleration of the connection point left to the joint accelerations
     rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_y = S_ddot_rrr2_tip_y + qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+    rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     # (rrr2-A7) acceleration of joint 1
     qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
     # (rrr2-N3) acceleration of the reference point of link 2, less gravity
@@ -2645,28 +2634,28 @@ def _legs_rrr2(c, k, x, s, f):
     S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
         axis_y_rrr2_axes2_in_base_y*gravity_y
     )
-    # (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_z = (
     h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
         h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
     )
-    # (rrr2-A16) angular acceleration of link 2
+    # (rrr2-A15) angular acceleration of link 2
     alpha_2_rrr2_z = (
     inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
     )
-    # (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-    # (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-    # (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-    # (rrr2-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y - inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x
         - N_1_rrr2_z)
     )
     c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
-    # (rrr2-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr2-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass
     c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass
     c_true_rrr2_in_base_x = (
@@ -2825,8 +2814,9 @@ arrays=(('M', (2, 2)), ('Z', (2,)), ('H', (2, 3))),
             _dynamics_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x', 'g_r0_y',
-            'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+('J_1_rrr_zz', 'J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr',
+            'd_Gamma_1_rrr_t', 'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'g_r0_x',
+            'g_r0_y', 'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
             'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
             'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
             'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
@@ -2846,7 +2836,8 @@ arrays=(('M', (2, 2)), ('Z', (2,)), ('H', (2, 3))),
             _dynamics_rrr2,
             "rrr2",
 (),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'g_r0_x_2',
+('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Jc_1_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2',
+            'd_Gamma_1_rrr2_t', 'd_Gamma_1_rrr2_y', 'd_c_rrr2_yy', 'd_phi_2_rrr2_t', 'g_r0_x_2',
             'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
             'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
             'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
@@ -2885,10 +2876,11 @@ arrays=(('M', (2, 2)),),
             _M_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'h_2_rrr_x',
-            'h_2_rrr_y', 'inv_Kd_1_rrr_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t',
-            'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+('J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'd_Gamma_1_rrr_t',
+            'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
             'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
             'size_rrr'),
 (),
@@ -2901,10 +2893,11 @@ arrays=(('M', (2, 2)),),
             _M_rrr2,
             "rrr2",
 (),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'h_2_rrr2_x',
-            'h_2_rrr2_y', 'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x',
-            'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy',
-            'rrr2_base_frame_yx', 'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
+('J_2_rrr2_zz', 'Jc_1_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2',
+            'd_Gamma_1_rrr2_t', 'd_Gamma_1_rrr2_y', 'd_c_rrr2_yy', 'd_phi_2_rrr2_t', 'h_2_rrr2_y',
+            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
+            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
+            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
             'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
             'rrr2_platform_point_y', 'size_rrr2'),
 (),

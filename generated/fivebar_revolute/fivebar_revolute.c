@@ -379,11 +379,24 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         const real J_2_t = rho_tip_2_x*rho_tip_2_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_zz = J_1_zz + J_2_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_x = rho_tip_2_x*rrr_link2_mass;
         const real h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t = J_2_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_y = d_Gamma_1_t + h_2_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_t = h_2_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -d_Gamma_1_y*inv_rrr_platform_joint_offset_x -
+            h_2_x*inv_rrr_platform_joint_offset_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
@@ -401,11 +414,16 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_zz[leg] = J_1_zz;
         model->J_2_zz[leg] = J_2_zz;
+        model->Jc_1_zz[leg] = Jc_1_zz;
         model->Kd_1_t_2[leg] = Kd_1_t_2;
         model->Kd_1_t_3[leg] = Kd_1_t_3;
         model->b_r0_x[leg] = b_r0_x;
         model->b_r0_y[leg] = b_r0_y;
         model->branch_1[leg] = branch_1;
+        model->d_Gamma_1_t[leg] = d_Gamma_1_t;
+        model->d_Gamma_1_y[leg] = d_Gamma_1_y;
+        model->d_c_yy[leg] = d_c_yy;
+        model->d_phi_2_t[leg] = d_phi_2_t;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->h_1_x[leg] = h_1_x;
@@ -451,7 +469,7 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 252 mul, 148 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 212 mul, 132 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[5][LANES];
 } dynamics_values;
@@ -491,9 +509,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real t_dot_y = s->t_dot_y[j];
         const real J_1_zz = m->J_1_zz[i];
         const real J_2_zz = m->J_2_zz[i];
+        const real Jc_1_zz = m->Jc_1_zz[i];
         const real Kd_1_t_2 = m->Kd_1_t_2[i];
         const real Kd_1_t_3 = m->Kd_1_t_3[i];
         const real branch_1 = m->branch_1[i];
+        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
+        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
+        const real d_c_yy = m->d_c_yy[i];
+        const real d_phi_2_t = m->d_phi_2_t[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real h_1_x = m->h_1_x[i];
@@ -561,35 +584,27 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = c_2*inv_r_1_r0_y;
-        const real w_1_t_2 = inv_r_1_r0_y*s_2;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
-        /* (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_zx = w_2_t - c_2*w_1_t - s_2*w_1_t_2;
-        const real d_alpha_2_zy = inv_rrr_platform_joint_offset_x + c_2*w_1_t_2 - s_2*w_1_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zx = J_2_zz*d_alpha_2_zx - h_2_y;
-        const real d_mu_2_zy = h_2_x + J_2_zz*d_alpha_2_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_zx = c_2*d_mu_2_zx + d_mu_2_zy*s_2 - J_1_zz*w_1_t;
-        const real d_N_1_zy = J_1_zz*w_1_t_2 + c_2*d_mu_2_zy - d_mu_2_zx*s_2;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
+        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_2_zx*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zx - d_N_1_zy*s_2) -
-            d_mu_2_zx*w_2_t;
-        const real d_c_xy = d_alpha_2_zy*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zy + d_N_1_zx*s_2) -
-            d_mu_2_zy*w_2_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_alpha_2_zy*h_2_x + d_mu_2_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
+            d_Gamma_2_x*w_2_t;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_5 = 2*Q_t_3*axis_y_rrr_axes2_in_base_x - d_c_xx;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_y + Q_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_t_7 = 2*Q_t_4*axis_y_rrr_axes2_in_base_y - d_c_xx;
+        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
+        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
+        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
@@ -600,50 +615,50 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
             + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = bias_x*inv_r_1_r0_y;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = J_1_zz*qdd_1_o + g_r1_x*h_1_y - g_r1_y*h_1_x;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_z = qdd_1_o +
-            inv_rrr_platform_joint_offset_x*(qd_1*qd_1*rrr_joint2_offset_x*s_2 -
-            qdd_1_o*r_1_r0_x);
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+            inv_rrr_platform_joint_offset_x*(W_1_t*rrr_joint2_offset_x*s_2 - qdd_1_o*r_1_r0_x);
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = J_2_zz*alpha_2_o_z + h_2_y*(c_2*g_r1_x - g_r1_y*s_2) -
             h_2_x*(c_2*g_r1_y + g_r1_x*s_2);
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
             N_1_o_z);
         const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
             axis_y_rrr_axes2_in_base_y*c_o_x;
         const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
             axis_y_rrr_axes2_in_base_y*c_o_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
+        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
+        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
         o->sum[0][k] = Q_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_t_7;  /* total_rrr_yy */
         o->sum[3][k] = U_in_base_x;  /* total_rrr_x */
         o->sum[4][k] = U_in_base_y;  /* total_rrr_y */
-        o->entry[0][k] = -w_1_t_3;
-        o->entry[1][k] = w_1_t_4;
+        o->entry[0][k] = -w_1_t;
+        o->entry[1][k] = w_1_t_2;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
             unless(magnitude(-r_1_r0_y) > TOLERANCE*size_);
         o->unreachable[k] = unless(disc_1 >= 0);
@@ -674,8 +689,8 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real Z_p_y = m->Z_p_y;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr_xx;
-        const real M_tt_yy = m_star + total_rrr_yy;
+        const real M_tt_xx = m_star - total_rrr_xx;
+        const real M_tt_yy = m_star - total_rrr_yy;
         /* (M3) translational part of Z */
         const real Z_t_x = total_rrr_x - Z_p_x;
         const real Z_t_y = total_rrr_y - Z_p_y;
@@ -734,7 +749,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 4, w, code, H);
 }
 
-/* ---- M: 160 mul, 96 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 124 mul, 80 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], sum[3][LANES];
 } M_values;
@@ -763,12 +778,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const size_t j = states*k;
         const real t_x = s->t_x[j];
         const real t_y = s->t_y[j];
-        const real J_1_zz = m->J_1_zz[i];
         const real J_2_zz = m->J_2_zz[i];
+        const real Jc_1_zz = m->Jc_1_zz[i];
         const real Kd_1_t_2 = m->Kd_1_t_2[i];
         const real Kd_1_t_3 = m->Kd_1_t_3[i];
         const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
+        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
+        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
+        const real d_c_yy = m->d_c_yy[i];
+        const real d_phi_2_t = m->d_phi_2_t[i];
         const real h_2_y = m->h_2_y[i];
         const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -816,6 +834,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_t = rrr_platform_joint_offset_x*s_2;
         const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
+        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
         const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1 = 1/rho2_1;
@@ -830,35 +849,27 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = c_2*inv_r_1_r0_y;
-        const real w_1_t_2 = inv_r_1_r0_y*s_2;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*(c_2*r_1_x + r_1_t*s_2);
-        /* (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_zx = w_2_t - c_2*w_1_t - s_2*w_1_t_2;
-        const real d_alpha_2_zy = inv_rrr_platform_joint_offset_x + c_2*w_1_t_2 - s_2*w_1_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zx = J_2_zz*d_alpha_2_zx - h_2_y;
-        const real d_mu_2_zy = h_2_x + J_2_zz*d_alpha_2_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_zx = c_2*d_mu_2_zx + d_mu_2_zy*s_2 - J_1_zz*w_1_t;
-        const real d_N_1_zy = J_1_zz*w_1_t_2 + c_2*d_mu_2_zy - d_mu_2_zx*s_2;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
+        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_2_zx*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zx - d_N_1_zy*s_2) -
-            d_mu_2_zx*w_2_t;
-        const real d_c_xy = d_alpha_2_zy*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zy + d_N_1_zx*s_2) -
-            d_mu_2_zy*w_2_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_alpha_2_zy*h_2_x + d_mu_2_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
+            d_Gamma_2_x*w_2_t;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_5 = 2*Q_t_3*axis_y_rrr_axes2_in_base_x - d_c_xx;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_y + Q_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_t_7 = 2*Q_t_4*axis_y_rrr_axes2_in_base_y - d_c_xx;
+        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
+        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
+        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
         o->sum[0][k] = Q_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_t_7;  /* total_rrr_yy */
@@ -884,8 +895,8 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_rrr_yy = s->sum[2][k];
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr_xx;
-        const real M_tt_yy = m_star + total_rrr_yy;
+        const real M_tt_xx = m_star - total_rrr_xx;
+        const real M_tt_yy = m_star - total_rrr_yy;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = total_rrr_xy;
         M[2*w + k] = total_rrr_xy;
@@ -932,7 +943,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 4, w, code, M);
 }
 
-/* ---- Z: 170 mul, 94 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 166 mul, 94 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[2][LANES];
 } Z_values;
@@ -1052,36 +1063,36 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
             + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = bias_x*inv_r_1_r0_y;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = J_1_zz*qdd_1_o + g_r1_x*h_1_y - g_r1_y*h_1_x;
-        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A17) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_z = qdd_1_o +
-            inv_rrr_platform_joint_offset_x*(qd_1*qd_1*rrr_joint2_offset_x*s_2 -
-            qdd_1_o*r_1_r0_x);
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+            inv_rrr_platform_joint_offset_x*(W_1_t*rrr_joint2_offset_x*s_2 - qdd_1_o*r_1_r0_x);
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = J_2_zz*alpha_2_o_z + h_2_y*(c_2*g_r1_x - g_r1_y*s_2) -
             h_2_x*(c_2*g_r1_y + g_r1_x*s_2);
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
             N_1_o_z);
         const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
             axis_y_rrr_axes2_in_base_y*c_o_x;
         const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
@@ -1296,7 +1307,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 4, w, code, H);
 }
 
-/* ---- required: 184 mul, 108 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 180 mul, 108 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
         f_p_x[LANES], f_p_y[LANES], sum[2][LANES];
@@ -1436,11 +1447,12 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
             + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
         const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
@@ -1451,7 +1463,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
         /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A7) acceleration of joint 1 */
         const real qdd_1 = inv_r_1_r0_y*rel_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -1459,20 +1471,20 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
             g_r0_x*s_1);
-        /* (rrr-A16) angular acceleration of link 2 */
+        /* (rrr-A15) angular acceleration of link 2 */
         const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
         const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
@@ -1825,7 +1837,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 4, w, code, rates);
 }
 
-/* ---- joint_accelerations: 126 mul, 62 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
 } joint_accelerations_values;
@@ -1944,14 +1956,16 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
             + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
         const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+            W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_x -
             axis_y_rrr_axes2_in_base_x*t_ddot_y;
         const real rel_y = axis_y_rrr_axes2_in_base_x*t_ddot_x +
-            axis_y_rrr_axes2_in_base_y*t_ddot_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+            axis_y_rrr_axes2_in_base_y*t_ddot_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A7) acceleration of joint 1 */
         const real qdd_1 = inv_r_1_r0_y*rel_x;
         const real qdd_2 = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x);
@@ -2008,7 +2022,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 4, w, code, accelerations);
 }
 
-/* ---- legs: 186 mul, 104 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 182 mul, 104 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
 } legs_values;
@@ -2136,11 +2150,12 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x
             + axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A4) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
         const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
@@ -2151,7 +2166,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*t_ddot_y;
         /* (rrr-A5) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A7) acceleration of joint 1 */
         const real qdd_1 = inv_r_1_r0_y*rel_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -2159,24 +2174,24 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
             g_r0_x*s_1);
-        /* (rrr-A16) angular acceleration of link 2 */
+        /* (rrr-A15) angular acceleration of link 2 */
         const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
         const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_2_x*rrr_link2_mass;
         const real c_true_y = c_y - acc_2_y*rrr_link2_mass;
         const real c_true_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_y +

@@ -89,13 +89,14 @@ typedef struct {
 typedef struct {
     fivebar_revolute_real Z_p_x, Z_p_y, gravity_x, gravity_y, h_star_x, h_star_y, m_star;
     /* legs of type rrr */
-    fivebar_revolute_real J_1_zz[2], J_2_zz[2], Kd_1_t_2[2], Kd_1_t_3[2], b_r0_x[2], b_r0_y[2],
-            branch_1[2], g_r0_x[2], g_r0_y[2], h_1_x[2], h_1_y[2], h_2_x[2], h_2_y[2],
-            inv_Kd_1_t_5[2], inv_rrr_platform_joint_offset_x[2], inv_uu_2_t[2], rho2_1_t[2],
-            rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2],
-            rrr_base_point_x[2], rrr_base_point_y[2], rrr_joint2_offset_x[2], rrr_link1_mass[2],
-            rrr_link2_mass[2], rrr_platform_joint_offset_x[2], rrr_platform_point_x[2],
-            rrr_platform_point_y[2], size_[2];
+    fivebar_revolute_real J_1_zz[2], J_2_zz[2], Jc_1_zz[2], Kd_1_t_2[2], Kd_1_t_3[2], b_r0_x[2],
+            b_r0_y[2], branch_1[2], d_Gamma_1_t[2], d_Gamma_1_y[2], d_c_yy[2], d_phi_2_t[2],
+            g_r0_x[2], g_r0_y[2], h_1_x[2], h_1_y[2], h_2_x[2], h_2_y[2], inv_Kd_1_t_5[2],
+            inv_rrr_platform_joint_offset_x[2], inv_uu_2_t[2], rho2_1_t[2], rrr_base_frame_xx[2],
+            rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2], rrr_base_point_x[2],
+            rrr_base_point_y[2], rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
+            rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
+            size_[2];
 } fivebar_revolute_model;
 
 extern const fivebar_revolute_params fivebar_revolute_default_params;
@@ -107,13 +108,13 @@ extern const fivebar_revolute_real fivebar_revolute_HOME_Q[FIVEBAR_REVOLUTE_NJ];
    model is all NaN. */
 int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revolute_model *model);
 
-/* Inertia matrix M. 160 mul, 96 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 124 mul, 80 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int fivebar_revolute_M(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     fivebar_revolute_real *M);
 size_t fivebar_revolute_M_batch(const fivebar_revolute_model *model, size_t n, const
     fivebar_revolute_real *X, fivebar_revolute_real *M, int *status);
 
-/* Velocity and gravity terms Z. 170 mul, 94 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 166 mul, 94 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int fivebar_revolute_Z(const fivebar_revolute_model *model, const fivebar_revolute_real *X, const
     fivebar_revolute_real *V, fivebar_revolute_real *Z);
@@ -128,7 +129,7 @@ int fivebar_revolute_H(const fivebar_revolute_model *model, const fivebar_revolu
 size_t fivebar_revolute_H_batch(const fivebar_revolute_model *model, size_t n, const
     fivebar_revolute_real *X, fivebar_revolute_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 252 mul, 148 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 212 mul, 132 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int fivebar_revolute_dynamics(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
     const fivebar_revolute_real *V, fivebar_revolute_real *M, fivebar_revolute_real *Z,
@@ -152,7 +153,7 @@ size_t fivebar_revolute_joint_rates_batch(const fivebar_revolute_model *model, s
     fivebar_revolute_real *X, const fivebar_revolute_real *V, fivebar_revolute_real *rates, int
     *status);
 
-/* Accelerations of all joints. 126 mul, 62 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 124 mul, 62 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int fivebar_revolute_joint_accelerations(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
@@ -161,7 +162,7 @@ size_t fivebar_revolute_joint_accelerations_batch(const fivebar_revolute_model *
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, fivebar_revolute_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 184 mul, 108 add, 4 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 180 mul, 108 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int fivebar_revolute_inverse_dynamics(const fivebar_revolute_model *model, const
@@ -171,7 +172,7 @@ size_t fivebar_revolute_inverse_dynamics_batch(const fivebar_revolute_model *mod
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 252 mul, 148 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 212 mul, 132 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int fivebar_revolute_forward_dynamics(const fivebar_revolute_model *model, const
@@ -190,7 +191,7 @@ size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *A, fivebar_revolute_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 186 mul, 104 add, 4 div, 2
+/* Force of each leg on the platform at its platform joint, base axes. 182 mul, 104 add, 4 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (2 x 3). */
 int fivebar_revolute_leg_reactions(const fivebar_revolute_model *model, const

@@ -304,11 +304,20 @@ def _prepare(p):
     # (rrr-G6) inertia tensor of link 2 about the connection point
     J_2_t = rho_tip_2_x*rho_tip_2_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_zz = J_1_zz + J_2_zz
     # (rrr-G5) first moment of link 2 about the connection point
     h_2_x = rho_tip_2_x*rrr_link2_mass
     h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-V6) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = J_2_zz*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_y = d_Gamma_1_t + h_2_x
+    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_t = h_2_y*inv_rrr_platform_joint_offset_x
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_yy = -d_Gamma_1_y*inv_rrr_platform_joint_offset_x - h_2_x*inv_rrr_platform_joint_offset_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
     g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
@@ -345,11 +354,16 @@ def _prepare(p):
         "rrr": {
             "J_1_zz": np.broadcast_to(J_1_zz, _rrr),
             "J_2_zz": np.broadcast_to(J_2_zz, _rrr),
+            "Jc_1_zz": np.broadcast_to(Jc_1_zz, _rrr),
             "Kd_1_t_2": np.broadcast_to(Kd_1_t_2, _rrr),
             "Kd_1_t_3": np.broadcast_to(Kd_1_t_3, _rrr),
             "b_r0_x": np.broadcast_to(b_r0_x, _rrr),
             "b_r0_y": np.broadcast_to(b_r0_y, _rrr),
             "branch_1": np.broadcast_to(branch_1, _rrr),
+            "d_Gamma_1_t": np.broadcast_to(d_Gamma_1_t, _rrr),
+            "d_Gamma_1_y": np.broadcast_to(d_Gamma_1_y, _rrr),
+            "d_c_yy": np.broadcast_to(d_c_yy, _rrr),
+            "d_phi_2_t": np.broadcast_to(d_phi_2_t, _rrr),
             "g_r0_x": np.broadcast_to(g_r0_x, _rrr),
             "g_r0_y": np.broadcast_to(g_r0_y, _rrr),
             "h_1_x": np.broadcast_to(h_1_x, _rrr),
@@ -526,7 +540,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 252 mul, 148 add, 4 div, 2 sqrt, 0 trig
+# dynamics: 212 mul, 132 add, 4 div, 2 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -545,8 +559,9 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y,
-        inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
+    J_1_zz, J_2_zz, Jc_1_zz, Kd_1_t_2, Kd_1_t_3, branch_1, d_Gamma_1_t, d_Gamma_1_y, d_c_yy,
+        d_phi_2_t, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, inv_Kd_1_t_5,
+        inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
         rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
         rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
         rrr_platform_point_y, size,
@@ -598,30 +613,23 @@ def _dynamics_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_r0_y = 1.0/r_1_r0_y
-    w_1_t = c_2*inv_r_1_r0_y
-    w_1_t_2 = inv_r_1_r0_y*s_2
     # (rrr-V6) reciprocal vector 2
     w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x
-    # (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_zx = w_2_t - c_2*w_1_t - s_2*w_1_t_2
-    d_alpha_2_zy = inv_rrr_platform_joint_offset_x + c_2*w_1_t_2 - s_2*w_1_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_zx = J_2_zz*d_alpha_2_zx - h_2_y
-    d_mu_2_zy = h_2_x + J_2_zz*d_alpha_2_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_zx = c_2*d_mu_2_zx + d_mu_2_zy*s_2 - J_1_zz*w_1_t
-    d_N_1_zy = J_1_zz*w_1_t_2 + c_2*d_mu_2_zy - d_mu_2_zx*s_2
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = d_alpha_2_zx*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zx - d_N_1_zy*s_2) - d_mu_2_zx*w_2_t
-    d_c_xy = d_alpha_2_zy*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zy + d_N_1_zx*s_2) - d_mu_2_zy*w_2_t
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_alpha_2_zy*h_2_x + d_mu_2_zy*inv_rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x
+    d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy - d_Gamma_2_x*w_2_t
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy
-    Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy
-    Q_t_5 = 2.0*Q_t_3*axis_y_rrr_axes2_in_base_x - d_c_xx
-    Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_y + Q_t_4*axis_y_rrr_axes2_in_base_x
-    Q_t_7 = 2.0*Q_t_4*axis_y_rrr_axes2_in_base_y - d_c_xx
+    Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy
+    Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy
+    Q_t_5 = d_c_yy + 2.0*Q_t_3*axis_y_rrr_axes2_in_base_y
+    Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y
+    Q_t_7 = d_c_yy + 2.0*Q_t_4*axis_y_rrr_axes2_in_base_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r1_x = c_1*g_r0_x + g_r0_y*s_1
     g_r1_y = c_1*g_r0_y - g_r0_x*s_1
@@ -632,46 +640,47 @@ def _dynamics_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rrr-V12) centripetal tensor of link 2
     W_2_t = omega_2_z*omega_2_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - c_2*qd_1*qd_1*rrr_joint2_offset_x
+    bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
     # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = bias_x*inv_r_1_r0_y
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = J_1_zz*qdd_1_o + g_r1_x*h_1_y - g_r1_y*h_1_x
-    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_z = (
-    qdd_1_o + inv_rrr_platform_joint_offset_x*(qd_1*qd_1*rrr_joint2_offset_x*s_2 -
-        qdd_1_o*r_1_r0_x)
+    qdd_1_o + inv_rrr_platform_joint_offset_x*(W_1_t*rrr_joint2_offset_x*s_2 - qdd_1_o*r_1_r0_x)
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_z = (
     J_2_zz*alpha_2_o_z + h_2_y*(c_2*g_r1_x - g_r1_y*s_2) - h_2_x*(c_2*g_r1_y + g_r1_x*s_2)
     )
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + mu_2_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x - N_1_o_z)
     c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y - axis_y_rrr_axes2_in_base_y*c_o_x
     U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x - axis_y_rrr_axes2_in_base_y*c_o_y
     # (rrr-V5) reciprocal vector 1
-    w_1_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
-    w_1_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
+    w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
+    w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) & (abs(-r_1_r0_y) > _TOLERANCE * size)
-    return (ok, (Q_t_5, Q_t_6, Q_t_7, U_in_base_x, U_in_base_y,), (-w_1_t_3, w_1_t_4,),)
+    return (ok, (Q_t_5, Q_t_6, Q_t_7, U_in_base_x, U_in_base_y,), (-w_1_t, w_1_t_2,),)
 
 
 def _dynamics_after(c, s, t, f):
     Z_p_x, Z_p_y, m_star = c
     total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_x, total_rrr_y = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rrr_xx
-    M_tt_yy = m_star + total_rrr_yy
+    M_tt_xx = m_star - total_rrr_xx
+    M_tt_yy = m_star - total_rrr_yy
     # (M3) translational part of Z
     Z_t_x = total_rrr_x - Z_p_x
     Z_t_y = total_rrr_y - Z_p_y
@@ -679,7 +688,7 @@ def _dynamics_after(c, s, t, f):
     return (ok, (M_tt_xx, total_rrr_xy, total_rrr_xy, M_tt_yy, Z_t_x, Z_t_y,),)
 
 
-# M: 160 mul, 96 add, 4 div, 2 sqrt, 0 trig
+# M: 124 mul, 80 add, 4 div, 2 sqrt, 0 trig
 def _M_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -693,11 +702,11 @@ def _M_before(c, X, f):
 def _M_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_zz, J_2_zz, Kd_1_t_2, Kd_1_t_3, branch_1, h_2_x, h_2_y, inv_Kd_1_t_5,
-        inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t, rrr_base_frame_xx,
-        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
-        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
-        rrr_platform_point_y, size,
+    J_2_zz, Jc_1_zz, Kd_1_t_2, Kd_1_t_3, branch_1, d_Gamma_1_t, d_Gamma_1_y, d_c_yy, d_phi_2_t,
+        h_2_y, inv_Kd_1_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_t, rho2_1_t,
+        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+        rrr_platform_point_x, rrr_platform_point_y, size,
     ) = k
     t_x, t_y = s
     # (rrr-K1) from the base point to the connection point
@@ -729,6 +738,7 @@ def _M_rrr(c, k, x, s, f):
     # (rrr-V2) from joint 1 to the connection point, along the links
     r_1_t = rrr_platform_joint_offset_x*s_2
     r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x
+    r_1_r0_x = c_2*r_1_x + r_1_t*s_2
     r_1_r0_y = r_1_x*s_2 - c_2*r_1_t
     # (rrr-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1 = 1.0/rho2_1
@@ -745,30 +755,23 @@ def _M_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_r0_y = 1.0/r_1_r0_y
-    w_1_t = c_2*inv_r_1_r0_y
-    w_1_t_2 = inv_r_1_r0_y*s_2
     # (rrr-V6) reciprocal vector 2
-    w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*(c_2*r_1_x + r_1_t*s_2)
-    # (rrr-A17) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_zx = w_2_t - c_2*w_1_t - s_2*w_1_t_2
-    d_alpha_2_zy = inv_rrr_platform_joint_offset_x + c_2*w_1_t_2 - s_2*w_1_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_zx = J_2_zz*d_alpha_2_zx - h_2_y
-    d_mu_2_zy = h_2_x + J_2_zz*d_alpha_2_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_zx = c_2*d_mu_2_zx + d_mu_2_zy*s_2 - J_1_zz*w_1_t
-    d_N_1_zy = J_1_zz*w_1_t_2 + c_2*d_mu_2_zy - d_mu_2_zx*s_2
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = d_alpha_2_zx*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zx - d_N_1_zy*s_2) - d_mu_2_zx*w_2_t
-    d_c_xy = d_alpha_2_zy*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zy + d_N_1_zx*s_2) - d_mu_2_zy*w_2_t
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_alpha_2_zy*h_2_x + d_mu_2_zy*inv_rrr_platform_joint_offset_x
+    w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x
+    d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy - d_Gamma_2_x*w_2_t
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy
-    Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy
-    Q_t_5 = 2.0*Q_t_3*axis_y_rrr_axes2_in_base_x - d_c_xx
-    Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_y + Q_t_4*axis_y_rrr_axes2_in_base_x
-    Q_t_7 = 2.0*Q_t_4*axis_y_rrr_axes2_in_base_y - d_c_xx
+    Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy
+    Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy
+    Q_t_5 = d_c_yy + 2.0*Q_t_3*axis_y_rrr_axes2_in_base_y
+    Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y
+    Q_t_7 = d_c_yy + 2.0*Q_t_4*axis_y_rrr_axes2_in_base_x
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) & (abs(-r_1_r0_y) > _TOLERANCE * size)
     return (ok, (Q_t_5, Q_t_6, Q_t_7,), (),)
 
@@ -777,13 +780,13 @@ def _M_after(c, s, t, f):
     m_star, = c
     total_rrr_xx, total_rrr_xy, total_rrr_yy = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rrr_xx
-    M_tt_yy = m_star + total_rrr_yy
+    M_tt_xx = m_star - total_rrr_xx
+    M_tt_yy = m_star - total_rrr_yy
     ok = True
     return (ok, (M_tt_xx, total_rrr_xy, total_rrr_xy, M_tt_yy,),)
 
 
-# Z: 170 mul, 94 add, 4 div, 2 sqrt, 0 trig
+# Z: 166 mul, 94 add, 4 div, 2 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -865,31 +868,32 @@ def _Z_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rrr-V12) centripetal tensor of link 2
     W_2_t = omega_2_z*omega_2_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - c_2*qd_1*qd_1*rrr_joint2_offset_x
+    bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
     # (rrr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = bias_x*inv_r_1_r0_y
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = J_1_zz*qdd_1_o + g_r1_x*h_1_y - g_r1_y*h_1_x
-    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A17) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_z = (
-    qdd_1_o + inv_rrr_platform_joint_offset_x*(qd_1*qd_1*rrr_joint2_offset_x*s_2 -
-        qdd_1_o*r_1_r0_x)
+    qdd_1_o + inv_rrr_platform_joint_offset_x*(W_1_t*rrr_joint2_offset_x*s_2 - qdd_1_o*r_1_r0_x)
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_z = (
     J_2_zz*alpha_2_o_z + h_2_y*(c_2*g_r1_x - g_r1_y*s_2) - h_2_x*(c_2*g_r1_y + g_r1_x*s_2)
     )
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + mu_2_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x - N_1_o_z)
     c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y - axis_y_rrr_axes2_in_base_y*c_o_x
     U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x - axis_y_rrr_axes2_in_base_y*c_o_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) & (abs(-r_1_r0_y) > _TOLERANCE * size)
@@ -976,7 +980,7 @@ def _H_rrr(c, k, x, s, f):
     return (ok, (), (-w_1_t, w_1_t_2,),)
 
 
-# required: 184 mul, 108 add, 4 div, 2 sqrt, 0 trig
+# required: 180 mul, 108 add, 4 div, 2 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     gravity_x, gravity_y, m_star = c
     X_0 = X[0]
@@ -1068,10 +1072,12 @@ def _required_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rrr-V12) centripetal tensor of link 2
     W_2_t = omega_2_z*omega_2_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - c_2*qd_1*qd_1*rrr_joint2_offset_x
+    bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
     w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
@@ -1080,7 +1086,7 @@ def _required_rrr(c, k, x, s, f):
     S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
     # (rrr-A5) acceleration of the connection point left to the joint accelerations
     rel_x = S_ddot_tip_x - bias_x
-    rel_y = S_ddot_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2
+    rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2
     # (rrr-A7) acceleration of joint 1
     qdd_1 = inv_r_1_r0_y*rel_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -1090,17 +1096,17 @@ def _required_rrr(c, k, x, s, f):
     acc_2_y = (
     S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-    # (rrr-A16) angular acceleration of link 2
+    # (rrr-A15) angular acceleration of link 2
     alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + mu_2_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_rrr_platform_joint_offset_x*mu_2_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z)
     c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x
     c_in_base_x = axis_y_rrr_axes2_in_base_x*c_y + axis_y_rrr_axes2_in_base_y*c_x
@@ -1254,7 +1260,7 @@ def _joint_rates_rrr(c, k, x, s, f):
     return (ok, (), (-qd_1, qd_2,),)
 
 
-# joint_accelerations: 126 mul, 62 add, 4 div, 2 sqrt, 0 trig
+# joint_accelerations: 124 mul, 62 add, 4 div, 2 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1337,13 +1343,15 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - c_2*qd_1*qd_1*rrr_joint2_offset_x
+    bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
     # (rrr-A5) acceleration of the connection point left to the joint accelerations
     rel_x = axis_y_rrr_axes2_in_base_y*t_ddot_x - bias_x - axis_y_rrr_axes2_in_base_x*t_ddot_y
     rel_y = (
     axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y +
-        qd_1*qd_1*rrr_joint2_offset_x*s_2
+        W_1_t*rrr_joint2_offset_x*s_2
     )
     # (rrr-A7) acceleration of joint 1
     qdd_1 = inv_r_1_r0_y*rel_x
@@ -1352,7 +1360,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     return (ok, (), (-qdd_1, qdd_2,),)
 
 
-# legs: 186 mul, 104 add, 4 div, 2 sqrt, 0 trig
+# legs: 182 mul, 104 add, 4 div, 2 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1437,10 +1445,12 @@ def _legs_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(axis_y_rrr_axes2_in_base_x*t_dot_x +
         axis_y_rrr_axes2_in_base_y*t_dot_y + qd_1*r_1_r0_x) - qd_1
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_t = qd_1*qd_1
     # (rrr-V12) centripetal tensor of link 2
     W_2_t = omega_2_z*omega_2_z
     # (rrr-A4) acceleration of the connection point at zero joint accelerations
-    bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x - c_2*qd_1*qd_1*rrr_joint2_offset_x
+    bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y
     w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y
@@ -1449,7 +1459,7 @@ def _legs_rrr(c, k, x, s, f):
     S_ddot_tip_y = axis_y_rrr_axes2_in_base_x*t_ddot_x + axis_y_rrr_axes2_in_base_y*t_ddot_y
     # (rrr-A5) acceleration of the connection point left to the joint accelerations
     rel_x = S_ddot_tip_x - bias_x
-    rel_y = S_ddot_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2
+    rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2
     # (rrr-A7) acceleration of joint 1
     qdd_1 = inv_r_1_r0_y*rel_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -1459,20 +1469,20 @@ def _legs_rrr(c, k, x, s, f):
     acc_2_y = (
     S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-    # (rrr-A16) angular acceleration of link 2
+    # (rrr-A15) angular acceleration of link 2
     alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + mu_2_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_rrr_platform_joint_offset_x*mu_2_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z)
     c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x
-    # (rrr-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_2_x*rrr_link2_mass
     c_true_y = c_y - acc_2_y*rrr_link2_mass
     c_true_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_y + axis_y_rrr_axes2_in_base_y*c_true_x
@@ -1569,10 +1579,11 @@ arrays=(('M', (2, 2)), ('Z', (2,)), ('H', (2, 2))),
             _dynamics_rrr,
             "rrr",
 (),
-('J_1_zz', 'J_2_zz', 'Kd_1_t_2', 'Kd_1_t_3', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y',
-            'h_2_x', 'h_2_y', 'inv_Kd_1_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_t',
-            'rho2_1_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+('J_1_zz', 'J_2_zz', 'Jc_1_zz', 'Kd_1_t_2', 'Kd_1_t_3', 'branch_1', 'd_Gamma_1_t', 'd_Gamma_1_y',
+            'd_c_yy', 'd_phi_2_t', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y',
+            'inv_Kd_1_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_t', 'rho2_1_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
             'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
             'size'),
 (),
@@ -1607,11 +1618,12 @@ arrays=(('M', (2, 2)),),
             _M_rrr,
             "rrr",
 (),
-('J_1_zz', 'J_2_zz', 'Kd_1_t_2', 'Kd_1_t_3', 'branch_1', 'h_2_x', 'h_2_y', 'inv_Kd_1_t_5',
-            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_t', 'rho2_1_t', 'rrr_base_frame_xx',
-            'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy', 'rrr_base_point_x',
-            'rrr_base_point_y', 'rrr_joint2_offset_x', 'rrr_platform_joint_offset_x',
-            'rrr_platform_point_x', 'rrr_platform_point_y', 'size'),
+('J_2_zz', 'Jc_1_zz', 'Kd_1_t_2', 'Kd_1_t_3', 'branch_1', 'd_Gamma_1_t', 'd_Gamma_1_y', 'd_c_yy',
+            'd_phi_2_t', 'h_2_y', 'inv_Kd_1_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_t',
+            'rho2_1_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
+            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
+            'size'),
 (),
 (0, 1),
             3,

@@ -437,21 +437,23 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real J_3_yz = pus_link3_inertia_yz -
             pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
         const real J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (pus-V6) reciprocal vector 3 */
-        const real inv_pus_platform_joint_offset_x = 1/pus_platform_joint_offset_x;
         /* (pus-G4) first moment of link 3 about the connection point */
         const real h_3_x = pus_link3_mass*rho_tip_3_x;
         const real h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
         const real h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
-        /* (pus-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xy*inv_pus_platform_joint_offset_x;
-        const real d_mu_3_t_2 = J_3_yz*inv_pus_platform_joint_offset_x;
-        const real d_mu_3_t_3 = J_3_yy*inv_pus_platform_joint_offset_x;
-        /* (pus-N10) coefficient of the acceleration in: inertia force of link 3 from its turning about
-           its reference point */
+        /* (pus-V6) reciprocal vector 3 */
+        const real inv_pus_platform_joint_offset_x = 1/pus_platform_joint_offset_x;
+        /* (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t = J_3_yy*inv_pus_platform_joint_offset_x;
+        const real d_Gamma_3_y = d_Gamma_3_t + h_3_x;
+        /* (pus-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
+           reference point */
         const real d_phi_3_t = h_3_z*inv_pus_platform_joint_offset_x;
-        const real d_phi_3_t_2 = h_3_x*inv_pus_platform_joint_offset_x;
+        /* (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -d_Gamma_3_y*inv_pus_platform_joint_offset_x -
+            h_3_x*inv_pus_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_4 = pus_link3_mass*pus_platform_point_x;
         const real h_star_t_5 = pus_link3_mass*pus_platform_point_y;
@@ -463,7 +465,7 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real J_star_t_14 = pus_link3_mass*(size_t_3 - size_t_5);
         const real J_star_t_15 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
         const real J_star_t_16 = pus_link3_mass*(size_t_4 - size_t_5);
-        /* (pus-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
             gravity_z*pus_base_frame_zx;
@@ -471,9 +473,9 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
             gravity_z*pus_base_frame_zy;
         const real g_r0_z = gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz +
             gravity_z*pus_base_frame_zz;
-        /* (pus-N12) half the trace of that inertia tensor */
+        /* (pus-N17) half the trace of that inertia tensor */
         const real trace_J_3 = R(0.5)*J_3_xx + R(0.5)*J_3_yy + R(0.5)*J_3_zz;
-        /* (pus-N13) second moment of mass of the links that turn with link 3 */
+        /* (pus-N18) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_xx = trace_J_3 - J_3_xx;
         const real Sigma_3_yy = trace_J_3 - J_3_zz;
         const real Sigma_3_zz = trace_J_3 - J_3_yy;
@@ -491,7 +493,6 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->J_3_xx[leg] = J_3_xx;
         model->J_3_xy[leg] = J_3_xy;
         model->J_3_xz[leg] = J_3_xz;
-        model->J_3_yy[leg] = J_3_yy;
         model->J_3_yz[leg] = J_3_yz;
         model->J_3_zz[leg] = J_3_zz;
         model->Sigma_3_xx[leg] = Sigma_3_xx;
@@ -500,11 +501,10 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->b_r0_x[leg] = b_r0_x;
         model->branch_1[leg] = branch_1;
         model->branch_2[leg] = branch_2;
-        model->d_mu_3_t[leg] = d_mu_3_t;
-        model->d_mu_3_t_2[leg] = d_mu_3_t_2;
-        model->d_mu_3_t_3[leg] = d_mu_3_t_3;
+        model->d_Gamma_3_t[leg] = d_Gamma_3_t;
+        model->d_Gamma_3_y[leg] = d_Gamma_3_y;
+        model->d_c_yy[leg] = d_c_yy;
         model->d_phi_3_t[leg] = d_phi_3_t;
-        model->d_phi_3_t_2[leg] = d_phi_3_t_2;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->g_r0_z[leg] = g_r0_z;
@@ -591,7 +591,7 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2097 mul, 1551 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -786,7 +786,6 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real J_3_xx = m->J_3_xx[i];
         const real J_3_xy = m->J_3_xy[i];
         const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
         const real Sigma_3_xx = m->Sigma_3_xx[i];
@@ -794,11 +793,10 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real Sigma_3_zz = m->Sigma_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real d_mu_3_t = m->d_mu_3_t[i];
-        const real d_mu_3_t_2 = m->d_mu_3_t_2[i];
-        const real d_mu_3_t_3 = m->d_mu_3_t_3[i];
+        const real d_Gamma_3_t = m->d_Gamma_3_t[i];
+        const real d_Gamma_3_y = m->d_Gamma_3_y[i];
+        const real d_c_yy = m->d_c_yy[i];
         const real d_phi_3_t = m->d_phi_3_t[i];
-        const real d_phi_3_t_2 = m->d_phi_3_t_2[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
@@ -882,61 +880,41 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
         const real w_1_t_3 = c_3*s_2;
         const real inv_w_1_t_24 = 1/w_1_t_3;
-        const real w_1_t_4 = c_3*inv_w_1_t_24;
-        /* (pus-N5) coefficient of the acceleration in: inertia force of link 1 less its weight */
-        const real d_f_1_xx = pus_link1_mass*s_2*w_1_t_4;
-        const real d_f_1_xy = c_2*pus_link1_mass*w_1_t_4;
-        const real d_f_1_xz = inv_w_1_t_24*pus_link1_mass*s_3;
+        /* (pus-G5) inertia tensor of link 3 about the connection point */
+        const real _y = J_3_xy*s_3 + J_3_yz*c_3;
         /* (pus-V5) reciprocal vector 2 */
         const real inv_v_2_t = 1/v_2_t;
         const real w_2_t = c_2*inv_v_2_t*inv_w_1_t_24;
-        const real w_2_t_2 = c_3*w_2_t;
-        const real w_2_t_3 = s_3*w_2_t;
         /* (pus-V6) reciprocal vector 3 */
         const real w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t;
-        /* (pus-A15) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_t = s_3*w_2_t_2;
-        const real d_alpha_2_t_2 = c_3*w_2_t_2;
-        const real d_alpha_2_t_3 = s_3*w_2_t_3;
-        const real d_alpha_2_t_4 = c_3*w_2_t_3;
-        const real d_alpha_2_t_5 = inv_v_2_t*s_3;
-        const real d_alpha_2_t_6 = c_3*inv_v_2_t;
-        const real _x = -c_3*d_alpha_2_t - d_alpha_2_t_3*s_3;
-        const real _y = c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3;
-        const real _x_2 = c_3*d_alpha_2_t_2 + d_alpha_2_t_4*s_3;
-        const real _y_2 = d_alpha_2_t_2*s_3 - c_3*d_alpha_2_t_4;
-        /* (pus-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6;
-        const real d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2;
-        /* (pus-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        /* (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_z = s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) -
-            c_3*(-h_3_x - J_3_xz*d_alpha_2_t_5 - J_3_zz*d_alpha_2_t_6);
-        /* (pus-N24) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+        const real d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 -
+            J_3_zz*c_3));
+        const real d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x;
+        const real d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t +
+            d_Gamma_2_t_2*w_1_t);
+        const real d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3;
+        const real d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3;
+        /* (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = c_2*d_f_1_xy + d_f_1_xx*s_2;
-        /* (pus-N27) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = w_2_t*(-c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) -
-            s_3*(J_3_xy*w_3_t + J_3_xz*_x_2 - J_3_xx*_x));
-        const real d_G_xy = -d_mu_3_zy*w_3_t - inv_w_1_t_24*(c_3*d_f_1_xz - d_Gamma_1_r0_y*s_3) -
-            w_2_t*(c_3*(d_mu_3_t_2 + J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y - h_3_y
-            - J_3_xz*_y_2));
-        /* (pus-N30) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_3_t_2 = _y*inv_v_2_t;
+        const real d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t);
+        /* (pus-A17) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = inv_v_2_t*s_3;
+        const real d_alpha_3_t_2 = c_3*inv_v_2_t;
+        /* (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_G_t + h_3_z*w_3_t + inv_w_1_t_24*(-c_3*d_Gamma_1_r0_y -
-            d_f_1_xz*s_3) + w_3_t*(h_3_z + J_3_xy*_x - J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y;
-        const real d_c_xy = -d_G_xy - d_phi_3_t - _y_2*h_3_y;
-        const real d_c_xz = d_Gamma_2_z*w_2_t + d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t +
-            inv_w_1_t_24*(d_f_1_xy*s_2 - c_2*d_f_1_xx);
-        const real d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_pus_platform_joint_offset_x;
-        /* (pus-N32) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_pus_platform_joint_offset_x -
-            _y*h_3_y;
+        const real d_c_xx = d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
+            inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass - c_3*h_3_y*w_2_t;
+        const real d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t;
+        const real d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y;
+        const real d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x;
+        /* (pus-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx - d_c_yy;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_2_t_6*h_3_x -
-            d_alpha_2_t_5*h_3_z;
+        const real Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x -
+            d_alpha_3_t*h_3_z;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_pus_axes3_in_base_x;
@@ -1027,27 +1005,27 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real qdd_1_o = inv_w_1_t_24*rel_o_x;
         const real qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y);
         const real qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z);
-        /* (pus-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_x = -g_r0_x - qdd_1_o;
-        /* (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3,
+        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
         const real acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2;
-        /* (pus-A16) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (pus-A15) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_t = qdd_2_o*s_3;
         const real alpha_2_o_t_2 = c_3*qdd_2_o;
-        /* (pus-A19) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (pus-A18) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = -alpha_2_o_t - zeta_3_x;
         const real alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y;
-        /* (pus-A21) acceleration tensor of link 3 */
+        /* (pus-A20) acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
         const real B_3_o_zy = alpha_3_o_x - zeta_3_x;
-        /* (pus-N16) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy -
             J_3_yz*(W_3_t_2 - W_3_t_3) - Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y -
@@ -1057,18 +1035,18 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x -
             B_3_o_xy*Sigma_3_yy - J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) -
             J_3_yz*alpha_2_o_t_2;
-        /* (pus-N28) remainder without the acceleration in: force at the connection point that balances
+        /* (pus-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y);
         const real G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z;
-        /* (pus-N31) remainder without the acceleration in: leg force on the platform without actuation
+        /* (pus-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 +
             G_o_t_2*w_1_t + acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y;
         const real c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t +
             W_3_t_3);
         const real c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x;
-        /* (pus-N33) velocity and gravity terms of the leg force */
+        /* (pus-N37) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
             axis_z_pus_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_pus_axes3_y*c_o_x - axis_y_pus_axes3_in_base_y*c_o_y -
@@ -1080,13 +1058,13 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
         /* (pus-V4) reciprocal vector 1 */
-        const real w_1_t_5 = axis_x_pus_axes3_x*inv_w_1_t_24;
-        const real w_1_t_6 = axis_x_pus_axes3_y*inv_w_1_t_24;
-        const real w_1_t_7 = axis_x_pus_axes3_z*inv_w_1_t_24;
+        const real w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24;
+        const real w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24;
+        const real w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_z*w_1_t_6 - q_in_base_y*w_1_t_7;
-        const real H_a_1_y = q_in_base_x*w_1_t_7 - q_in_base_z*w_1_t_5;
-        const real H_a_1_z = q_in_base_y*w_1_t_5 - q_in_base_x*w_1_t_6;
+        const real H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6;
+        const real H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4;
+        const real H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5;
         o->sum[0][k] = Q_t_12;  /* total_pus_xx */
         o->sum[1][k] = Q_t_13;  /* total_pus_xy */
         o->sum[2][k] = Q_t_14;  /* total_pus_xz */
@@ -1114,9 +1092,9 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         o->sum[24][k] = Z_a_t;  /* total_pus_x_2 */
         o->sum[25][k] = Z_a_t_2;  /* total_pus_y_2 */
         o->sum[26][k] = Z_a_t_3;  /* total_pus_z_2 */
-        o->entry[0][k] = -w_1_t_5;
-        o->entry[1][k] = -w_1_t_6;
-        o->entry[2][k] = -w_1_t_7;
+        o->entry[0][k] = -w_1_t_4;
+        o->entry[1][k] = -w_1_t_5;
+        o->entry[2][k] = -w_1_t_6;
         o->entry[3][k] = H_a_1_x;
         o->entry[4][k] = H_a_1_y;
         o->entry[5][k] = H_a_1_z;
@@ -1306,7 +1284,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 1281 mul, 915 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1433,16 +1411,14 @@ INLINE void M_legs_pus(const prepared *m, size_t leg, size_t legs, const M_value
         const real J_3_xx = m->J_3_xx[i];
         const real J_3_xy = m->J_3_xy[i];
         const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real d_mu_3_t = m->d_mu_3_t[i];
-        const real d_mu_3_t_2 = m->d_mu_3_t_2[i];
-        const real d_mu_3_t_3 = m->d_mu_3_t_3[i];
+        const real d_Gamma_3_t = m->d_Gamma_3_t[i];
+        const real d_Gamma_3_y = m->d_Gamma_3_y[i];
+        const real d_c_yy = m->d_c_yy[i];
         const real d_phi_3_t = m->d_phi_3_t[i];
-        const real d_phi_3_t_2 = m->d_phi_3_t_2[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -1523,61 +1499,41 @@ INLINE void M_legs_pus(const prepared *m, size_t leg, size_t legs, const M_value
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
         const real w_1_t_3 = c_3*s_2;
         const real inv_w_1_t_24 = 1/w_1_t_3;
-        const real w_1_t_4 = c_3*inv_w_1_t_24;
-        /* (pus-N5) coefficient of the acceleration in: inertia force of link 1 less its weight */
-        const real d_f_1_xx = pus_link1_mass*s_2*w_1_t_4;
-        const real d_f_1_xy = c_2*pus_link1_mass*w_1_t_4;
-        const real d_f_1_xz = inv_w_1_t_24*pus_link1_mass*s_3;
+        /* (pus-G5) inertia tensor of link 3 about the connection point */
+        const real _y = J_3_xy*s_3 + J_3_yz*c_3;
         /* (pus-V5) reciprocal vector 2 */
         const real inv_v_2_t = 1/v_2_t;
         const real w_2_t = c_2*inv_v_2_t*inv_w_1_t_24;
-        const real w_2_t_2 = c_3*w_2_t;
-        const real w_2_t_3 = s_3*w_2_t;
         /* (pus-V6) reciprocal vector 3 */
         const real w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t;
-        /* (pus-A15) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_t = s_3*w_2_t_2;
-        const real d_alpha_2_t_2 = c_3*w_2_t_2;
-        const real d_alpha_2_t_3 = s_3*w_2_t_3;
-        const real d_alpha_2_t_4 = c_3*w_2_t_3;
-        const real d_alpha_2_t_5 = inv_v_2_t*s_3;
-        const real d_alpha_2_t_6 = c_3*inv_v_2_t;
-        const real _x = -c_3*d_alpha_2_t - d_alpha_2_t_3*s_3;
-        const real _y = c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3;
-        const real _x_2 = c_3*d_alpha_2_t_2 + d_alpha_2_t_4*s_3;
-        const real _y_2 = d_alpha_2_t_2*s_3 - c_3*d_alpha_2_t_4;
-        /* (pus-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6;
-        const real d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2;
-        /* (pus-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        /* (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_z = s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) -
-            c_3*(-h_3_x - J_3_xz*d_alpha_2_t_5 - J_3_zz*d_alpha_2_t_6);
-        /* (pus-N24) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+        const real d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 -
+            J_3_zz*c_3));
+        const real d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x;
+        const real d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t +
+            d_Gamma_2_t_2*w_1_t);
+        const real d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3;
+        const real d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3;
+        /* (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = c_2*d_f_1_xy + d_f_1_xx*s_2;
-        /* (pus-N27) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = w_2_t*(-c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) -
-            s_3*(J_3_xy*w_3_t + J_3_xz*_x_2 - J_3_xx*_x));
-        const real d_G_xy = -d_mu_3_zy*w_3_t - inv_w_1_t_24*(c_3*d_f_1_xz - d_Gamma_1_r0_y*s_3) -
-            w_2_t*(c_3*(d_mu_3_t_2 + J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y - h_3_y
-            - J_3_xz*_y_2));
-        /* (pus-N30) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_3_t_2 = _y*inv_v_2_t;
+        const real d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t);
+        /* (pus-A17) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = inv_v_2_t*s_3;
+        const real d_alpha_3_t_2 = c_3*inv_v_2_t;
+        /* (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_G_t + h_3_z*w_3_t + inv_w_1_t_24*(-c_3*d_Gamma_1_r0_y -
-            d_f_1_xz*s_3) + w_3_t*(h_3_z + J_3_xy*_x - J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y;
-        const real d_c_xy = -d_G_xy - d_phi_3_t - _y_2*h_3_y;
-        const real d_c_xz = d_Gamma_2_z*w_2_t + d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t +
-            inv_w_1_t_24*(d_f_1_xy*s_2 - c_2*d_f_1_xx);
-        const real d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_pus_platform_joint_offset_x;
-        /* (pus-N32) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_pus_platform_joint_offset_x -
-            _y*h_3_y;
+        const real d_c_xx = d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
+            inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass - c_3*h_3_y*w_2_t;
+        const real d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t;
+        const real d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y;
+        const real d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x;
+        /* (pus-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx - d_c_yy;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_2_t_6*h_3_x -
-            d_alpha_2_t_5*h_3_z;
+        const real Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x -
+            d_alpha_3_t*h_3_z;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_pus_axes3_in_base_x;
@@ -2087,27 +2043,27 @@ INLINE void Z_legs_pus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real qdd_1_o = inv_w_1_t_24*rel_o_x;
         const real qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y);
         const real qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z);
-        /* (pus-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_x = -g_r0_x - qdd_1_o;
-        /* (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3,
+        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
         const real acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2;
-        /* (pus-A16) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (pus-A15) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_t = qdd_2_o*s_3;
         const real alpha_2_o_t_2 = c_3*qdd_2_o;
-        /* (pus-A19) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (pus-A18) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = -alpha_2_o_t - zeta_3_x;
         const real alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y;
-        /* (pus-A21) acceleration tensor of link 3 */
+        /* (pus-A20) acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
         const real B_3_o_zy = alpha_3_o_x - zeta_3_x;
-        /* (pus-N16) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy -
             J_3_yz*(W_3_t_2 - W_3_t_3) - Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y -
@@ -2117,18 +2073,18 @@ INLINE void Z_legs_pus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x -
             B_3_o_xy*Sigma_3_yy - J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) -
             J_3_yz*alpha_2_o_t_2;
-        /* (pus-N28) remainder without the acceleration in: force at the connection point that balances
+        /* (pus-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y);
         const real G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z;
-        /* (pus-N31) remainder without the acceleration in: leg force on the platform without actuation
+        /* (pus-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 +
             G_o_t_2*w_1_t + acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y;
         const real c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t +
             W_3_t_3);
         const real c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x;
-        /* (pus-N33) velocity and gravity terms of the leg force */
+        /* (pus-N37) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
             axis_z_pus_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_pus_axes3_y*c_o_x - axis_y_pus_axes3_in_base_y*c_o_y -
@@ -2769,7 +2725,7 @@ INLINE void required_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         /* (pus-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
         const real bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y;
-        /* (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3,
+        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
         /* (pus-V4) reciprocal vector 1 */
@@ -2802,7 +2758,7 @@ INLINE void required_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real qdd_1 = inv_w_1_t_24*rel_x;
         const real qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y);
         const real qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z);
-        /* (pus-N7) acceleration of the reference point of link 3, less gravity */
+        /* (pus-N5) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2;
@@ -2811,26 +2767,26 @@ INLINE void required_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         /* (pus-A14) angular acceleration of link 2 */
         const real alpha_2_t = qdd_2*s_3;
         const real alpha_2_t_2 = c_3*qdd_2;
-        /* (pus-A17) angular acceleration of link 3 */
+        /* (pus-A16) angular acceleration of link 3 */
         const real alpha_3_x = -alpha_2_t - zeta_3_x;
         const real alpha_3_y = alpha_2_t_2 - zeta_3_y;
-        /* (pus-A20) acceleration tensor of link 3 */
+        /* (pus-A19) acceleration tensor of link 3 */
         const real B_3_xy = qdd_3 - W_3_xy;
         const real B_3_yx = -W_3_xy - qdd_3;
         const real B_3_zx = zeta_3_y - alpha_3_y;
         const real B_3_zy = alpha_3_x - zeta_3_x;
-        /* (pus-N14) inertia moment of the links that turn with link 3, about their reference points */
+        /* (pus-N19) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 -
             W_3_t_3) - Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z;
         const real mu_3_y = B_3_xy*J_3_yz + Sigma_3_zz*alpha_2_t_2 + acc_3_x*h_3_y -
             B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_x;
         const real mu_3_z = B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy
             - J_3_xy*alpha_2_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2;
-        /* (pus-N26) force at the connection point that balances the leg's inertia and weight along all
+        /* (pus-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y);
         const real G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z;
-        /* (pus-N29) leg force on the platform without actuation and without the mass at the connection
+        /* (pus-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 +
             G_t_2*w_1_t + acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y;
@@ -3939,7 +3895,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t leg, size_t legs, const legs
         /* (pus-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_t = omega_2_t_2*pus_platform_joint_offset_x;
         const real bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y;
-        /* (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3,
+        /* (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real g_r1_y = g_r0_x*s_2 - c_2*g_r0_y;
         /* (pus-V4) reciprocal vector 1 */
@@ -3968,7 +3924,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t leg, size_t legs, const legs
         const real qdd_1 = inv_w_1_t_24*rel_x;
         const real qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y);
         const real qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z);
-        /* (pus-N7) acceleration of the reference point of link 3, less gravity */
+        /* (pus-N5) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2;
@@ -3977,32 +3933,32 @@ INLINE void legs_legs_pus(const prepared *m, size_t leg, size_t legs, const legs
         /* (pus-A14) angular acceleration of link 2 */
         const real alpha_2_t = qdd_2*s_3;
         const real alpha_2_t_2 = c_3*qdd_2;
-        /* (pus-A17) angular acceleration of link 3 */
+        /* (pus-A16) angular acceleration of link 3 */
         const real alpha_3_x = -alpha_2_t - zeta_3_x;
         const real alpha_3_y = alpha_2_t_2 - zeta_3_y;
-        /* (pus-A20) acceleration tensor of link 3 */
+        /* (pus-A19) acceleration tensor of link 3 */
         const real B_3_xy = qdd_3 - W_3_xy;
         const real B_3_yx = -W_3_xy - qdd_3;
         const real B_3_zx = zeta_3_y - alpha_3_y;
         const real B_3_zy = alpha_3_x - zeta_3_x;
-        /* (pus-N14) inertia moment of the links that turn with link 3, about their reference points */
+        /* (pus-N19) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 -
             W_3_t_3) - Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z;
         const real mu_3_y = B_3_xy*J_3_yz + Sigma_3_zz*alpha_2_t_2 + acc_3_x*h_3_y -
             B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_x;
         const real mu_3_z = B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy
             - J_3_xy*alpha_2_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2;
-        /* (pus-N26) force at the connection point that balances the leg's inertia and weight along all
+        /* (pus-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y);
         const real G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z;
-        /* (pus-N29) leg force on the platform without actuation and without the mass at the connection
+        /* (pus-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 +
             G_t_2*w_1_t + acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y;
         const real c_y = -G_t_2 - B_3_yx*h_3_x - alpha_2_t*h_3_y - h_3_z*(W_3_t + W_3_t_3);
         const real c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x;
-        /* (pus-N34) leg force on the platform without actuation, the last link's mass included */
+        /* (pus-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_3_x*pus_link3_mass;
         const real c_true_y = c_y - acc_3_y*pus_link3_mass;
         const real c_true_z = c_z - acc_3_z*pus_link3_mass;
@@ -4218,12 +4174,13 @@ INLINE void potential_legs_pus(const prepared *m, size_t leg, size_t legs, const
         const real c_2 = S_r0_y*inv_rho2_2*root_2;
         /* (pus-K13) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_rho2_2*q_1_t*root_2;
-        /* (pus-G4) first moment of link 3 about the connection point */
-        const real h_3_r1_x = h_3_z*s_3 - c_3*h_3_x;
+        /* (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t = h_3_z*s_3 - c_3*h_3_x;
         /* (V1) potential energy */
-        const real potential_t_4 = g_r0_x*(h_1_x + h_3_r1_x*s_2 + pus_link1_mass*(b_r0_x + q_1) -
-            c_2*h_3_y) + g_r0_y*(h_1_y + potential_t - c_2*h_3_r1_x - h_3_y*s_2) + g_r0_z*(h_1_z +
-            potential_t_2 + c_3*h_3_z + h_3_x*s_3);
+        const real potential_t_4 = g_r0_x*(h_1_x + d_Gamma_2_t*s_2 + pus_link1_mass*(b_r0_x + q_1)
+            - c_2*h_3_y) + g_r0_y*(h_1_y + potential_t - c_2*d_Gamma_2_t - h_3_y*s_2) +
+            g_r0_z*(h_1_z + potential_t_2 + c_3*h_3_z + h_3_x*s_3);
         o->sum[0][k] = potential_t_4;  /* total_pus */
         o->unreachable[k] = unless(disc_1 >= 0);
         o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);

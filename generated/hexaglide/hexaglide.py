@@ -374,19 +374,19 @@ def _prepare(p):
     pus_link3_inertia_yz - pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass
     )
     J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (pus-V6) reciprocal vector 3
-    inv_pus_platform_joint_offset_x = 1.0/pus_platform_joint_offset_x
     # (pus-G4) first moment of link 3 about the connection point
     h_3_x = pus_link3_mass*rho_tip_3_x
     h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass
     h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass
-    # (pus-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xy*inv_pus_platform_joint_offset_x
-    d_mu_3_t_2 = J_3_yz*inv_pus_platform_joint_offset_x
-    d_mu_3_t_3 = J_3_yy*inv_pus_platform_joint_offset_x
-    # (pus-N10) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    # (pus-V6) reciprocal vector 3
+    inv_pus_platform_joint_offset_x = 1.0/pus_platform_joint_offset_x
+    # (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = J_3_yy*inv_pus_platform_joint_offset_x
+    d_Gamma_3_y = d_Gamma_3_t + h_3_x
+    # (pus-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     d_phi_3_t = h_3_z*inv_pus_platform_joint_offset_x
-    d_phi_3_t_2 = h_3_x*inv_pus_platform_joint_offset_x
+    # (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_yy = -d_Gamma_3_y*inv_pus_platform_joint_offset_x - h_3_x*inv_pus_platform_joint_offset_x
     # (L2) first moment about the platform origin
     h_star_t_4 = pus_link3_mass*pus_platform_point_x
     h_star_t_5 = pus_link3_mass*pus_platform_point_y
@@ -398,7 +398,7 @@ def _prepare(p):
     J_star_t_14 = pus_link3_mass*(size_t_3 - size_t_5)
     J_star_t_15 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z
     J_star_t_16 = pus_link3_mass*(size_t_4 - size_t_5)
-    # (pus-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = (
     gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx + gravity_z*pus_base_frame_zx
     )
@@ -408,9 +408,9 @@ def _prepare(p):
     g_r0_z = (
     gravity_x*pus_base_frame_xz + gravity_y*pus_base_frame_yz + gravity_z*pus_base_frame_zz
     )
-    # (pus-N12) half the trace of that inertia tensor
+    # (pus-N17) half the trace of that inertia tensor
     trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (pus-N13) second moment of mass of the links that turn with link 3
+    # (pus-N18) second moment of mass of the links that turn with link 3
     Sigma_3_xx = trace_J_3 - J_3_xx
     Sigma_3_yy = trace_J_3 - J_3_zz
     Sigma_3_zz = trace_J_3 - J_3_yy
@@ -487,7 +487,6 @@ def _prepare(p):
             "J_3_xx": np.broadcast_to(J_3_xx, _pus),
             "J_3_xy": np.broadcast_to(J_3_xy, _pus),
             "J_3_xz": np.broadcast_to(J_3_xz, _pus),
-            "J_3_yy": np.broadcast_to(J_3_yy, _pus),
             "J_3_yz": np.broadcast_to(J_3_yz, _pus),
             "J_3_zz": np.broadcast_to(J_3_zz, _pus),
             "Sigma_3_xx": np.broadcast_to(Sigma_3_xx, _pus),
@@ -496,11 +495,10 @@ def _prepare(p):
             "b_r0_x": np.broadcast_to(b_r0_x, _pus),
             "branch_1": np.broadcast_to(branch_1, _pus),
             "branch_2": np.broadcast_to(branch_2, _pus),
-            "d_mu_3_t": np.broadcast_to(d_mu_3_t, _pus),
-            "d_mu_3_t_2": np.broadcast_to(d_mu_3_t_2, _pus),
-            "d_mu_3_t_3": np.broadcast_to(d_mu_3_t_3, _pus),
+            "d_Gamma_3_t": np.broadcast_to(d_Gamma_3_t, _pus),
+            "d_Gamma_3_y": np.broadcast_to(d_Gamma_3_y, _pus),
+            "d_c_yy": np.broadcast_to(d_c_yy, _pus),
             "d_phi_3_t": np.broadcast_to(d_phi_3_t, _pus),
-            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, _pus),
             "g_r0_x": np.broadcast_to(g_r0_x, _pus),
             "g_r0_y": np.broadcast_to(g_r0_y, _pus),
             "g_r0_z": np.broadcast_to(g_r0_z, _pus),
@@ -688,7 +686,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 2097 mul, 1551 add, 18 div, 12 sqrt, 0 trig
+# dynamics: 1869 mul, 1395 add, 18 div, 12 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -796,12 +794,12 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_pus(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-        branch_2, d_mu_3_t, d_mu_3_t_2, d_mu_3_t_3, d_phi_3_t, d_phi_3_t_2, g_r0_x, g_r0_y,
-        g_r0_z, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
-        pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
-        pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
-        pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_link1_mass,
+    J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
+        branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, g_r0_x, g_r0_y, g_r0_z, h_3_x,
+        h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t, pus_base_frame_xx,
+        pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx, pus_base_frame_yy,
+        pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy, pus_base_frame_zz,
+        pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_link1_mass,
         pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
         pus_platform_point_z, size, size_t_6, uu_3_t,
     ) = k
@@ -878,63 +876,37 @@ def _dynamics_pus(c, k, x, s, f):
     )
     w_1_t_3 = c_3*s_2
     inv_w_1_t_24 = 1.0/w_1_t_3
-    w_1_t_4 = c_3*inv_w_1_t_24
-    # (pus-N5) coefficient of the acceleration in: inertia force of link 1 less its weight
-    d_f_1_xx = pus_link1_mass*s_2*w_1_t_4
-    d_f_1_xy = c_2*pus_link1_mass*w_1_t_4
-    d_f_1_xz = inv_w_1_t_24*pus_link1_mass*s_3
+    # (pus-G5) inertia tensor of link 3 about the connection point
+    _y = J_3_xy*s_3 + J_3_yz*c_3
     # (pus-V5) reciprocal vector 2
     inv_v_2_t = 1.0/v_2_t
     w_2_t = c_2*inv_v_2_t*inv_w_1_t_24
-    w_2_t_2 = c_3*w_2_t
-    w_2_t_3 = s_3*w_2_t
     # (pus-V6) reciprocal vector 3
     w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t
-    # (pus-A15) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_t = s_3*w_2_t_2
-    d_alpha_2_t_2 = c_3*w_2_t_2
-    d_alpha_2_t_3 = s_3*w_2_t_3
-    d_alpha_2_t_4 = c_3*w_2_t_3
-    d_alpha_2_t_5 = inv_v_2_t*s_3
-    d_alpha_2_t_6 = c_3*inv_v_2_t
-    _x = -c_3*d_alpha_2_t - d_alpha_2_t_3*s_3
-    _y = c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3
-    _x_2 = c_3*d_alpha_2_t_2 + d_alpha_2_t_4*s_3
-    _y_2 = d_alpha_2_t_2*s_3 - c_3*d_alpha_2_t_4
-    # (pus-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6
-    d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2
-    # (pus-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_z = (
-    s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) - c_3*(-h_3_x - J_3_xz*d_alpha_2_t_5
-        - J_3_zz*d_alpha_2_t_6)
-    )
-    # (pus-N24) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = c_2*d_f_1_xy + d_f_1_xx*s_2
-    # (pus-N27) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_t = (
-    w_2_t*(-c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) - s_3*(J_3_xy*w_3_t + J_3_xz*_x_2
-        - J_3_xx*_x))
-    )
-    d_G_xy = (
-    -d_mu_3_zy*w_3_t - inv_w_1_t_24*(c_3*d_f_1_xz - d_Gamma_1_r0_y*s_3) - w_2_t*(c_3*(d_mu_3_t_2 +
-        J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y - h_3_y - J_3_xz*_y_2))
-    )
-    # (pus-N30) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3))
+    d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x
+    d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t + d_Gamma_2_t_2*w_1_t)
+    d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3
+    d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3
+    # (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t_2 = _y*inv_v_2_t
+    d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t)
+    # (pus-A17) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = inv_v_2_t*s_3
+    d_alpha_3_t_2 = c_3*inv_v_2_t
+    # (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    d_G_t + h_3_z*w_3_t + inv_w_1_t_24*(-c_3*d_Gamma_1_r0_y - d_f_1_xz*s_3) + w_3_t*(h_3_z +
-        J_3_xy*_x - J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y
+    d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t - inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass
+        - c_3*h_3_y*w_2_t
     )
-    d_c_xy = -d_G_xy - d_phi_3_t - _y_2*h_3_y
-    d_c_xz = (
-    d_Gamma_2_z*w_2_t + d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t + inv_w_1_t_24*(d_f_1_xy*s_2 -
-        c_2*d_f_1_xx)
-    )
-    d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_pus_platform_joint_offset_x
-    # (pus-N32) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_pus_platform_joint_offset_x - _y*h_3_y
+    d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t
+    d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y
+    d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x
+    # (pus-N36) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_2_t_6*h_3_x - d_alpha_2_t_5*h_3_z
+    Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
@@ -1045,25 +1017,25 @@ def _dynamics_pus(c, k, x, s, f):
     qdd_1_o = inv_w_1_t_24*rel_o_x
     qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y)
     qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z)
-    # (pus-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_x = -g_r0_x - qdd_1_o
-    # (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
     acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2
-    # (pus-A16) remainder without the acceleration in: angular acceleration of link 2
+    # (pus-A15) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_t = qdd_2_o*s_3
     alpha_2_o_t_2 = c_3*qdd_2_o
-    # (pus-A19) remainder without the acceleration in: angular acceleration of link 3
+    # (pus-A18) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = -alpha_2_o_t - zeta_3_x
     alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y
-    # (pus-A21) acceleration tensor of link 3
+    # (pus-A20) acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y
     B_3_o_zy = alpha_3_o_x - zeta_3_x
-    # (pus-N16) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
         Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
@@ -1076,17 +1048,17 @@ def _dynamics_pus(c, k, x, s, f):
     B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy -
         J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_o_t_2
     )
-    # (pus-N28) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (pus-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y)
     G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z
-    # (pus-N31) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (pus-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 + G_o_t_2*w_1_t +
         acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y
     )
     c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
     c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-    # (pus-N33) velocity and gravity terms of the leg force
+    # (pus-N37) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
         axis_z_pus_axes3_in_base_x*c_o_z
@@ -1104,19 +1076,19 @@ def _dynamics_pus(c, k, x, s, f):
     Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
     Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (pus-V4) reciprocal vector 1
-    w_1_t_5 = axis_x_pus_axes3_x*inv_w_1_t_24
-    w_1_t_6 = axis_x_pus_axes3_y*inv_w_1_t_24
-    w_1_t_7 = axis_x_pus_axes3_z*inv_w_1_t_24
+    w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24
+    w_1_t_5 = axis_x_pus_axes3_y*inv_w_1_t_24
+    w_1_t_6 = axis_x_pus_axes3_z*inv_w_1_t_24
     # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_z*w_1_t_6 - q_in_base_y*w_1_t_7
-    H_a_1_y = q_in_base_x*w_1_t_7 - q_in_base_z*w_1_t_5
-    H_a_1_z = q_in_base_y*w_1_t_5 - q_in_base_x*w_1_t_6
+    H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6
+    H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4
+    H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5
     ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(v_2_t) > _TOLERANCE * size) & (abs(-w_1_t_3) > _TOLERANCE * 1.0)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
         M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
         M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (-w_1_t_5, -w_1_t_6, -w_1_t_7, H_a_1_x, H_a_1_y, H_a_1_z,),
+        (-w_1_t_4, -w_1_t_5, -w_1_t_6, H_a_1_x, H_a_1_y, H_a_1_z,),
     )
 
 
@@ -1171,7 +1143,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 1281 mul, 915 add, 18 div, 12 sqrt, 0 trig
+# M: 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1242,9 +1214,9 @@ def _M_before(c, X, f):
 def _M_pus(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, d_mu_3_t, d_mu_3_t_2,
-        d_mu_3_t_3, d_phi_3_t, d_phi_3_t_2, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x,
-        inv_uu_3_t, pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
+    J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy,
+        d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_pus_platform_joint_offset_x, inv_uu_3_t,
+        pus_base_frame_xx, pus_base_frame_xy, pus_base_frame_xz, pus_base_frame_yx,
         pus_base_frame_yy, pus_base_frame_yz, pus_base_frame_zx, pus_base_frame_zy,
         pus_base_frame_zz, pus_base_point_x, pus_base_point_y, pus_base_point_z, pus_link1_mass,
         pus_platform_joint_offset_x, pus_platform_point_x, pus_platform_point_y,
@@ -1320,63 +1292,37 @@ def _M_pus(c, k, x, s, f):
     )
     w_1_t_3 = c_3*s_2
     inv_w_1_t_24 = 1.0/w_1_t_3
-    w_1_t_4 = c_3*inv_w_1_t_24
-    # (pus-N5) coefficient of the acceleration in: inertia force of link 1 less its weight
-    d_f_1_xx = pus_link1_mass*s_2*w_1_t_4
-    d_f_1_xy = c_2*pus_link1_mass*w_1_t_4
-    d_f_1_xz = inv_w_1_t_24*pus_link1_mass*s_3
+    # (pus-G5) inertia tensor of link 3 about the connection point
+    _y = J_3_xy*s_3 + J_3_yz*c_3
     # (pus-V5) reciprocal vector 2
     inv_v_2_t = 1.0/v_2_t
     w_2_t = c_2*inv_v_2_t*inv_w_1_t_24
-    w_2_t_2 = c_3*w_2_t
-    w_2_t_3 = s_3*w_2_t
     # (pus-V6) reciprocal vector 3
     w_3_t = inv_pus_platform_joint_offset_x*inv_w_1_t_24*w_1_t
-    # (pus-A15) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_t = s_3*w_2_t_2
-    d_alpha_2_t_2 = c_3*w_2_t_2
-    d_alpha_2_t_3 = s_3*w_2_t_3
-    d_alpha_2_t_4 = c_3*w_2_t_3
-    d_alpha_2_t_5 = inv_v_2_t*s_3
-    d_alpha_2_t_6 = c_3*inv_v_2_t
-    _x = -c_3*d_alpha_2_t - d_alpha_2_t_3*s_3
-    _y = c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3
-    _x_2 = c_3*d_alpha_2_t_2 + d_alpha_2_t_4*s_3
-    _y_2 = d_alpha_2_t_2*s_3 - c_3*d_alpha_2_t_4
-    # (pus-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6
-    d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2
-    # (pus-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_z = (
-    s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) - c_3*(-h_3_x - J_3_xz*d_alpha_2_t_5
-        - J_3_zz*d_alpha_2_t_6)
-    )
-    # (pus-N24) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = c_2*d_f_1_xy + d_f_1_xx*s_2
-    # (pus-N27) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_t = (
-    w_2_t*(-c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) - s_3*(J_3_xy*w_3_t + J_3_xz*_x_2
-        - J_3_xx*_x))
-    )
-    d_G_xy = (
-    -d_mu_3_zy*w_3_t - inv_w_1_t_24*(c_3*d_f_1_xz - d_Gamma_1_r0_y*s_3) - w_2_t*(c_3*(d_mu_3_t_2 +
-        J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y - h_3_y - J_3_xz*_y_2))
-    )
-    # (pus-N30) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_v_2_t*(s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3))
+    d_Gamma_2_t_2 = _y*inv_pus_platform_joint_offset_x
+    d_Gamma_2_x = -c_3*h_3_y - inv_w_1_t_24*(c_2*d_Gamma_2_t + d_Gamma_2_t_2*w_1_t)
+    d_Gamma_2_y = d_Gamma_2_t_2 - h_3_y*s_3
+    d_Gamma_2_z = d_Gamma_2_t + c_3*h_3_x - h_3_z*s_3
+    # (pus-N22) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t_2 = _y*inv_v_2_t
+    d_Gamma_3_x = h_3_z - inv_w_1_t_24*(c_2*d_Gamma_3_t_2 + d_Gamma_3_t*w_1_t)
+    # (pus-A17) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = inv_v_2_t*s_3
+    d_alpha_3_t_2 = c_3*inv_v_2_t
+    # (pus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    d_G_t + h_3_z*w_3_t + inv_w_1_t_24*(-c_3*d_Gamma_1_r0_y - d_f_1_xz*s_3) + w_3_t*(h_3_z +
-        J_3_xy*_x - J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y
+    d_Gamma_2_x*w_2_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t - inv_w_1_t_24*inv_w_1_t_24*pus_link1_mass
+        - c_3*h_3_y*w_2_t
     )
-    d_c_xy = -d_G_xy - d_phi_3_t - _y_2*h_3_y
-    d_c_xz = (
-    d_Gamma_2_z*w_2_t + d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t + inv_w_1_t_24*(d_f_1_xy*s_2 -
-        c_2*d_f_1_xx)
-    )
-    d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_pus_platform_joint_offset_x
-    # (pus-N32) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_pus_platform_joint_offset_x - _y*h_3_y
+    d_c_xy = d_Gamma_2_y*w_2_t + d_Gamma_3_y*w_3_t - d_phi_3_t
+    d_c_xz = d_Gamma_2_z*w_2_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y
+    d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_pus_platform_joint_offset_x
+    # (pus-N36) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_2_t_6*h_3_x - d_alpha_2_t_5*h_3_z
+    Q_t_3 = d_c_xx + d_Gamma_2_z*inv_v_2_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_pus_axes3_x*d_c_xy + axis_z_pus_axes3_in_base_x*d_c_yz -
@@ -1709,25 +1655,25 @@ def _Z_pus(c, k, x, s, f):
     qdd_1_o = inv_w_1_t_24*rel_o_x
     qdd_3_o = inv_pus_platform_joint_offset_x*(qdd_1_o*w_1_t - rel_o_y)
     qdd_2_o = inv_v_2_t*(c_2*qdd_1_o - rel_o_z)
-    # (pus-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_x = -g_r0_x - qdd_1_o
-    # (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
     acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_o_z = u_1_tip_z + c_2*g_r0_x + g_r0_y*s_2
-    # (pus-A16) remainder without the acceleration in: angular acceleration of link 2
+    # (pus-A15) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_t = qdd_2_o*s_3
     alpha_2_o_t_2 = c_3*qdd_2_o
-    # (pus-A19) remainder without the acceleration in: angular acceleration of link 3
+    # (pus-A18) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = -alpha_2_o_t - zeta_3_x
     alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y
-    # (pus-A21) acceleration tensor of link 3
+    # (pus-A20) acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y
     B_3_o_zy = alpha_3_o_x - zeta_3_x
-    # (pus-N16) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (pus-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
         Sigma_3_zz*alpha_2_o_t - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
@@ -1740,17 +1686,17 @@ def _Z_pus(c, k, x, s, f):
     B_3_o_yx*Sigma_3_xx + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy -
         J_3_xy*alpha_2_o_t - J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_o_t_2
     )
-    # (pus-N28) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (pus-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_v_2_t*(mu_3_o_x*s_3 - c_3*mu_3_o_y)
     G_o_t_2 = inv_pus_platform_joint_offset_x*mu_3_o_z
-    # (pus-N31) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (pus-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     B_3_o_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_o_t*c_2 + G_o_t_2*w_1_t +
         acc_1_o_x*pus_link1_mass) - alpha_2_o_t_2*h_3_y
     )
     c_o_y = -G_o_t_2 - B_3_o_yx*h_3_x - alpha_2_o_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
     c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-    # (pus-N33) velocity and gravity terms of the leg force
+    # (pus-N37) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_pus_axes3_x*c_o_x - axis_y_pus_axes3_in_base_x*c_o_y -
         axis_z_pus_axes3_in_base_x*c_o_z
@@ -2165,7 +2111,7 @@ def _required_pus(c, k, x, s, f):
     # (pus-A5) acceleration of the connection point at zero joint accelerations
     bias_t = omega_2_t_2*pus_platform_joint_offset_x
     bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y
-    # (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
     # (pus-V4) reciprocal vector 1
     w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24
@@ -2202,7 +2148,7 @@ def _required_pus(c, k, x, s, f):
     qdd_1 = inv_w_1_t_24*rel_x
     qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y)
     qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z)
-    # (pus-N7) acceleration of the reference point of link 3, less gravity
+    # (pus-N5) acceleration of the reference point of link 3, less gravity
     acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2
@@ -2211,15 +2157,15 @@ def _required_pus(c, k, x, s, f):
     # (pus-A14) angular acceleration of link 2
     alpha_2_t = qdd_2*s_3
     alpha_2_t_2 = c_3*qdd_2
-    # (pus-A17) angular acceleration of link 3
+    # (pus-A16) angular acceleration of link 3
     alpha_3_x = -alpha_2_t - zeta_3_x
     alpha_3_y = alpha_2_t_2 - zeta_3_y
-    # (pus-A20) acceleration tensor of link 3
+    # (pus-A19) acceleration tensor of link 3
     B_3_xy = qdd_3 - W_3_xy
     B_3_yx = -W_3_xy - qdd_3
     B_3_zx = zeta_3_y - alpha_3_y
     B_3_zy = alpha_3_x - zeta_3_x
-    # (pus-N14) inertia moment of the links that turn with link 3, about their reference points
+    # (pus-N19) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
         Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z
@@ -2232,10 +2178,10 @@ def _required_pus(c, k, x, s, f):
     B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_xy*alpha_2_t -
         J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2
     )
-    # (pus-N26) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (pus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y)
     G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z
-    # (pus-N29) leg force on the platform without actuation and without the mass at the connection point
+    # (pus-N33) leg force on the platform without actuation and without the mass at the connection point
     c_x = (
     B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 + G_t_2*w_1_t +
         acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y
@@ -2921,7 +2867,7 @@ def _legs_pus(c, k, x, s, f):
     # (pus-A5) acceleration of the connection point at zero joint accelerations
     bias_t = omega_2_t_2*pus_platform_joint_offset_x
     bias_z = omega_2_t*qd_2_t + pus_platform_joint_offset_x*zeta_3_y
-    # (pus-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (pus-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_y = g_r0_x*s_2 - c_2*g_r0_y
     # (pus-V4) reciprocal vector 1
     w_1_t_4 = axis_x_pus_axes3_x*inv_w_1_t_24
@@ -2954,7 +2900,7 @@ def _legs_pus(c, k, x, s, f):
     qdd_1 = inv_w_1_t_24*rel_x
     qdd_3 = inv_pus_platform_joint_offset_x*(qdd_1*w_1_t - rel_y)
     qdd_2 = inv_v_2_t*(c_2*qdd_1 - rel_z)
-    # (pus-N7) acceleration of the reference point of link 3, less gravity
+    # (pus-N5) acceleration of the reference point of link 3, less gravity
     acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_z = S_ddot_tip_z + c_2*g_r0_x + g_r0_y*s_2
@@ -2963,15 +2909,15 @@ def _legs_pus(c, k, x, s, f):
     # (pus-A14) angular acceleration of link 2
     alpha_2_t = qdd_2*s_3
     alpha_2_t_2 = c_3*qdd_2
-    # (pus-A17) angular acceleration of link 3
+    # (pus-A16) angular acceleration of link 3
     alpha_3_x = -alpha_2_t - zeta_3_x
     alpha_3_y = alpha_2_t_2 - zeta_3_y
-    # (pus-A20) acceleration tensor of link 3
+    # (pus-A19) acceleration tensor of link 3
     B_3_xy = qdd_3 - W_3_xy
     B_3_yx = -W_3_xy - qdd_3
     B_3_zx = zeta_3_y - alpha_3_y
     B_3_zy = alpha_3_x - zeta_3_x
-    # (pus-N14) inertia moment of the links that turn with link 3, about their reference points
+    # (pus-N19) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy - J_3_yz*(W_3_t_2 - W_3_t_3) -
         Sigma_3_zz*alpha_2_t - acc_3_y*h_3_y - acc_3_z*h_3_z
@@ -2984,17 +2930,17 @@ def _legs_pus(c, k, x, s, f):
     B_3_yx*Sigma_3_xx + acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_xy*alpha_2_t -
         J_3_xz*(W_3_t - W_3_t_2) - J_3_yz*alpha_2_t_2
     )
-    # (pus-N26) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (pus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_v_2_t*(mu_3_x*s_3 - c_3*mu_3_y)
     G_t_2 = inv_pus_platform_joint_offset_x*mu_3_z
-    # (pus-N29) leg force on the platform without actuation and without the mass at the connection point
+    # (pus-N33) leg force on the platform without actuation and without the mass at the connection point
     c_x = (
     B_3_xy*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) + inv_w_1_t_24*(G_t*c_2 + G_t_2*w_1_t +
         acc_1_x*pus_link1_mass) - alpha_2_t_2*h_3_y
     )
     c_y = -G_t_2 - B_3_yx*h_3_x - alpha_2_t*h_3_y - h_3_z*(W_3_t + W_3_t_3)
     c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x
-    # (pus-N34) leg force on the platform without actuation, the last link's mass included
+    # (pus-N38) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_3_x*pus_link3_mass
     c_true_y = c_y - acc_3_y*pus_link3_mass
     c_true_z = c_z - acc_3_z*pus_link3_mass
@@ -3115,12 +3061,12 @@ def _potential_pus(c, k, x, s, f):
     c_2 = S_r0_y*inv_rho2_2*root_2
     # (pus-K13) sine of the angle of joint 2 from its reference direction
     s_2 = inv_rho2_2*q_1_t*root_2
-    # (pus-G4) first moment of link 3 about the connection point
-    h_3_r1_x = h_3_z*s_3 - c_3*h_3_x
+    # (pus-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = h_3_z*s_3 - c_3*h_3_x
     # (V1) potential energy
     potential_t_4 = (
-    g_r0_x*(h_1_x + h_3_r1_x*s_2 + pus_link1_mass*(b_r0_x + q_1) - c_2*h_3_y) + g_r0_y*(h_1_y +
-        potential_t - c_2*h_3_r1_x - h_3_y*s_2) + g_r0_z*(h_1_z + potential_t_2 + c_3*h_3_z +
+    g_r0_x*(h_1_x + d_Gamma_2_t*s_2 + pus_link1_mass*(b_r0_x + q_1) - c_2*h_3_y) + g_r0_y*(h_1_y +
+        potential_t - c_2*d_Gamma_2_t - h_3_y*s_2) + g_r0_z*(h_1_z + potential_t_2 + c_3*h_3_z +
         h_3_x*s_3)
     )
     ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6)
@@ -3152,15 +3098,15 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             _dynamics_pus,
             "pus",
 (),
-('J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Sigma_3_xx', 'Sigma_3_yy',
-            'Sigma_3_zz', 'branch_1', 'branch_2', 'd_mu_3_t', 'd_mu_3_t_2', 'd_mu_3_t_3',
-            'd_phi_3_t', 'd_phi_3_t_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_3_x', 'h_3_y', 'h_3_z',
-            'inv_pus_platform_joint_offset_x', 'inv_uu_3_t', 'pus_base_frame_xx',
-            'pus_base_frame_xy', 'pus_base_frame_xz', 'pus_base_frame_yx', 'pus_base_frame_yy',
-            'pus_base_frame_yz', 'pus_base_frame_zx', 'pus_base_frame_zy', 'pus_base_frame_zz',
-            'pus_base_point_x', 'pus_base_point_y', 'pus_base_point_z', 'pus_link1_mass',
-            'pus_platform_joint_offset_x', 'pus_platform_point_x', 'pus_platform_point_y',
-            'pus_platform_point_z', 'size', 'size_t_6', 'uu_3_t'),
+('J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_3_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz',
+            'branch_1', 'branch_2', 'd_Gamma_3_t', 'd_Gamma_3_y', 'd_c_yy', 'd_phi_3_t', 'g_r0_x',
+            'g_r0_y', 'g_r0_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_pus_platform_joint_offset_x',
+            'inv_uu_3_t', 'pus_base_frame_xx', 'pus_base_frame_xy', 'pus_base_frame_xz',
+            'pus_base_frame_yx', 'pus_base_frame_yy', 'pus_base_frame_yz', 'pus_base_frame_zx',
+            'pus_base_frame_zy', 'pus_base_frame_zz', 'pus_base_point_x', 'pus_base_point_y',
+            'pus_base_point_z', 'pus_link1_mass', 'pus_platform_joint_offset_x',
+            'pus_platform_point_x', 'pus_platform_point_y', 'pus_platform_point_z', 'size',
+            'size_t_6', 'uu_3_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -3202,8 +3148,8 @@ arrays=(('M', (6, 6)),),
             _M_pus,
             "pus",
 (),
-('J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'branch_1', 'branch_2', 'd_mu_3_t',
-            'd_mu_3_t_2', 'd_mu_3_t_3', 'd_phi_3_t', 'd_phi_3_t_2', 'h_3_x', 'h_3_y', 'h_3_z',
+('J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_3_zz', 'branch_1', 'branch_2', 'd_Gamma_3_t',
+            'd_Gamma_3_y', 'd_c_yy', 'd_phi_3_t', 'h_3_x', 'h_3_y', 'h_3_z',
             'inv_pus_platform_joint_offset_x', 'inv_uu_3_t', 'pus_base_frame_xx',
             'pus_base_frame_xy', 'pus_base_frame_xz', 'pus_base_frame_yx', 'pus_base_frame_yy',
             'pus_base_frame_yz', 'pus_base_frame_zx', 'pus_base_frame_zy', 'pus_base_frame_zz',

@@ -464,21 +464,23 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         const real J_3_yz = rus_link3_inertia_yz -
             rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
         const real J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (rus-V8) reciprocal vector 3 */
-        const real inv_rus_platform_joint_offset_x = 1/rus_platform_joint_offset_x;
         /* (rus-G5) first moment of link 3 about the connection point */
         const real h_3_x = rho_tip_3_x*rus_link3_mass;
         const real h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
         const real h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
-        /* (rus-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xy*inv_rus_platform_joint_offset_x;
-        const real d_mu_3_t_2 = J_3_yz*inv_rus_platform_joint_offset_x;
-        const real d_mu_3_t_3 = J_3_yy*inv_rus_platform_joint_offset_x;
+        /* (rus-V8) reciprocal vector 3 */
+        const real inv_rus_platform_joint_offset_x = 1/rus_platform_joint_offset_x;
+        /* (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t = J_3_yy*inv_rus_platform_joint_offset_x;
+        const real d_Gamma_3_y = d_Gamma_3_t + h_3_x;
         /* (rus-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its
            reference point */
         const real d_phi_3_t = h_3_z*inv_rus_platform_joint_offset_x;
-        const real d_phi_3_t_2 = h_3_x*inv_rus_platform_joint_offset_x;
+        /* (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -d_Gamma_3_y*inv_rus_platform_joint_offset_x -
+            h_3_x*inv_rus_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_4 = rus_link3_mass*rus_platform_point_x;
         const real h_star_t_5 = rus_link3_mass*rus_platform_point_y;
@@ -502,9 +504,9 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         const real h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
         const real h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
         const real h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
-        /* (rus-N8) half the trace of that inertia tensor */
+        /* (rus-N18) half the trace of that inertia tensor */
         const real trace_J_3 = R(0.5)*J_3_xx + R(0.5)*J_3_yy + R(0.5)*J_3_zz;
-        /* (rus-N9) second moment of mass of the links that turn with link 3 */
+        /* (rus-N19) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_xx = trace_J_3 - J_3_xx;
         const real Sigma_3_yy = trace_J_3 - J_3_zz;
         const real Sigma_3_zz = trace_J_3 - J_3_yy;
@@ -519,7 +521,6 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         model->J_3_xx[leg] = J_3_xx;
         model->J_3_xy[leg] = J_3_xy;
         model->J_3_xz[leg] = J_3_xz;
-        model->J_3_yy[leg] = J_3_yy;
         model->J_3_yz[leg] = J_3_yz;
         model->J_3_zz[leg] = J_3_zz;
         model->Kd_1_t_2[leg] = Kd_1_t_2;
@@ -531,11 +532,10 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
         model->b_r0_y[leg] = b_r0_y;
         model->branch_1[leg] = branch_1;
         model->branch_2[leg] = branch_2;
-        model->d_mu_3_t[leg] = d_mu_3_t;
-        model->d_mu_3_t_2[leg] = d_mu_3_t_2;
-        model->d_mu_3_t_3[leg] = d_mu_3_t_3;
+        model->d_Gamma_3_t[leg] = d_Gamma_3_t;
+        model->d_Gamma_3_y[leg] = d_Gamma_3_y;
+        model->d_c_yy[leg] = d_c_yy;
         model->d_phi_3_t[leg] = d_phi_3_t;
-        model->d_phi_3_t_2[leg] = d_phi_3_t_2;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->g_r0_z[leg] = g_r0_z;
@@ -623,7 +623,7 @@ int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2511 mul, 1779 add, 24 div, 12 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -819,7 +819,6 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real J_3_xx = m->J_3_xx[i];
         const real J_3_xy = m->J_3_xy[i];
         const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
         const real Kd_1_t_2 = m->Kd_1_t_2[i];
@@ -829,11 +828,10 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real Sigma_3_zz = m->Sigma_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real d_mu_3_t = m->d_mu_3_t[i];
-        const real d_mu_3_t_2 = m->d_mu_3_t_2[i];
-        const real d_mu_3_t_3 = m->d_mu_3_t_3[i];
+        const real d_Gamma_3_t = m->d_Gamma_3_t[i];
+        const real d_Gamma_3_y = m->d_Gamma_3_y[i];
+        const real d_c_yy = m->d_c_yy[i];
         const real d_phi_3_t = m->d_phi_3_t[i];
-        const real d_phi_3_t_2 = m->d_phi_3_t_2[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
@@ -954,64 +952,52 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
+        /* (rus-G6) inertia tensor of link 3 about the connection point */
+        const real _y = J_3_xy*s_3 + J_3_yz*c_3;
+        const real _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3);
+        /* (rus-V6) reciprocal vector 1 */
         const real inv_v_1_t = 1/v_1_t;
-        const real w_1_t_3 = c_3*inv_v_1_t;
-        const real w_1_t_4 = inv_v_1_t*s_3;
-        const real w_1_t_5 = s_2*w_1_t_3;
-        const real w_1_t_6 = c_2*w_1_t_3;
         /* (rus-V7) reciprocal vector 2 */
         const real inv_r_1_t = 1/r_1_t;
         const real w_2_t = inv_r_1_t*inv_v_1_t*v_1_z;
-        /* (rus-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_zx = inv_r_1_t + s_2*w_1_t_6 - c_2*w_1_t_5;
-        const real d_alpha_2_zy = c_2*w_1_t_6 + s_2*w_1_t_5 - c_3*w_2_t;
-        const real d_alpha_2_zz = s_3*w_2_t - w_1_t_4;
         /* (rus-V8) reciprocal vector 3 */
         const real w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*v_1_t_2;
-        /* (rus-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_t = d_alpha_2_zy*s_3;
-        const real d_alpha_2_t_2 = c_3*d_alpha_2_zy;
-        const real d_alpha_2_t_3 = d_alpha_2_zz*s_3;
-        const real d_alpha_2_t_4 = c_3*d_alpha_2_zz;
-        const real d_alpha_2_t_5 = d_alpha_2_zx*s_3;
-        const real d_alpha_2_t_6 = c_3*d_alpha_2_zx;
-        const real _x = d_alpha_2_t_3*s_3 - c_3*d_alpha_2_t;
-        const real _y = -c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3;
-        const real _x_2 = c_3*d_alpha_2_t_2 - d_alpha_2_t_4*s_3;
-        const real _y_2 = c_3*d_alpha_2_t_4 + d_alpha_2_t_2*s_3;
-        /* (rus-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6;
-        const real d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2;
-        const real _y_3 = -c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) -
-            s_3*(J_3_xy*w_3_t + J_3_xz*_x_2 - J_3_xx*_x);
-        const real _y_4 = c_3*(d_mu_3_t_2 + J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y -
-            h_3_y - J_3_xz*_y_2);
-        const real _y_5 = s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) - c_3*(-h_3_x
-            - J_3_xz*d_alpha_2_t_5 - J_3_zz*d_alpha_2_t_6);
-        const real _x_3 = -_y_3*c_3 - _y_4*s_3;
-        /* (rus-N25) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_zx = _y_5*c_2 - J_1_zz*w_1_t_5 - _x_3*s_2;
-        const real d_N_1_zy = J_1_zz*w_1_t_6 + _x_3*c_2 + _y_5*s_2;
-        const real d_N_1_zz = _y_3*s_3 - J_1_zz*w_1_t_4 - _y_4*c_3;
-        /* (rus-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = c_2*d_N_1_zy - d_N_1_zx*s_2;
-        /* (rus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_1_t = c_3*h_3_y;
+        const real d_Gamma_1_t_2 = _y_2*inv_r_1_t;
+        const real d_Gamma_1_t_3 = _y*inv_rus_platform_joint_offset_x;
+        const real d_Gamma_1_t_4 = d_Gamma_1_t_2*v_1_z;
+        const real d_Gamma_1_t_5 = d_Gamma_1_t_3*v_1_t_2;
+        const real d_Gamma_1_x = -d_Gamma_1_t - inv_v_1_t*(J_1_zz + _y_2 + d_Gamma_1_t_5 -
+            d_Gamma_1_t_4);
+        const real d_Gamma_1_y = d_Gamma_1_t_3 - h_3_y*s_3;
+        const real d_Gamma_1_z = d_Gamma_1_t_2 + c_3*h_3_x - h_3_z*s_3;
+        /* (rus-N26) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_x = -d_Gamma_1_t - inv_v_1_t*(_y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4);
+        /* (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t_2 = _y*inv_r_1_t;
+        const real d_Gamma_3_x = h_3_z - inv_v_1_t*(_y + d_Gamma_3_t*v_1_t_2 -
+            d_Gamma_3_t_2*v_1_z);
+        /* (rus-A23) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = inv_r_1_t*s_3;
+        const real d_alpha_3_t_2 = c_3*inv_r_1_t;
+        /* (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = h_3_z*w_3_t + inv_v_1_t*(d_N_1_zz*s_3 - c_3*d_Gamma_1_r0_y) +
-            w_3_t*(h_3_z + J_3_xy*_x - J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y - _y_3*w_2_t;
-        const real d_c_xy = d_mu_3_zy*w_3_t + inv_v_1_t*(-c_3*d_N_1_zz - d_Gamma_1_r0_y*s_3) -
-            d_phi_3_t - _y_2*h_3_y - _y_4*w_2_t;
-        const real d_c_xz = d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t + inv_v_1_t*(c_2*d_N_1_zx +
-            d_N_1_zy*s_2) - _y_5*w_2_t;
-        const real d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_rus_platform_joint_offset_x;
-        /* (rus-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_rus_platform_joint_offset_x -
-            _y*h_3_y;
+        const real d_c_xx = d_Gamma_1_x*inv_v_1_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
+            d_Gamma_2_x*w_2_t - h_3_y*(c_3*inv_v_1_t - c_3*w_2_t);
+        const real d_c_xy = d_Gamma_1_y*inv_v_1_t + d_Gamma_3_y*w_3_t - d_phi_3_t -
+            d_Gamma_1_y*w_2_t;
+        const real d_c_xz = d_Gamma_1_z*inv_v_1_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y -
+            d_Gamma_1_z*w_2_t;
+        const real d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_rus_platform_joint_offset_x;
+        /* (rus-N43) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx - d_c_yy;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + _y_5*inv_r_1_t + d_alpha_2_t_6*h_3_x - d_alpha_2_t_5*h_3_z;
+        const real Q_t_3 = d_c_xx + d_Gamma_1_z*inv_r_1_t + d_alpha_3_t_2*h_3_x -
+            d_alpha_3_t*h_3_z;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_rus_axes3_x*d_c_xy + axis_z_rus_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_rus_axes3_in_base_x;
@@ -1116,7 +1102,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         /* (rus-A11) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_v_1_t*rel_o_x;
         const real qdd_3_o = inv_rus_platform_joint_offset_x*(qdd_1_o*v_1_t_2 - rel_o_y);
-        /* (rus-N23) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rus-N31) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x;
         /* (rus-N4) remainder without the acceleration in: acceleration of the reference point of link 3,
@@ -1125,19 +1111,19 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real acc_3_o_x = u_1_tip_x + c_3*g_r2_y - g_r0_z*s_3;
         const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r2_y*s_3;
         const real acc_3_o_z = u_1_tip_z - c_2*g_r1_x - g_r1_y*s_2;
-        /* (rus-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rus-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_z = inv_r_1_t*(rel_o_z + qdd_1_o*v_1_z) - qdd_1_o;
         const real alpha_2_o_t = alpha_2_o_z*s_3;
         const real alpha_2_o_t_2 = alpha_2_o_z*c_3;
-        /* (rus-A26) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rus-A24) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_2_o_t - zeta_3_x;
         const real alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y;
-        /* (rus-A28) acceleration tensor of link 3 */
+        /* (rus-A26) acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
         const real B_3_o_zy = alpha_3_o_x - zeta_3_x;
-        /* (rus-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rus-N21) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy +
             Sigma_3_zz*alpha_2_o_t - J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_o_y*h_3_y -
@@ -1148,20 +1134,20 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + J_3_xy*alpha_2_o_t + J_3_yz*alpha_2_o_t_2 +
             acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2);
         const real mu_3_o_r0_y = mu_3_o_x*s_3 - c_3*mu_3_o_y;
-        /* (rus-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rus-N33) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_3_o_r0_y;
-        /* (rus-N32) remainder without the acceleration in: force at the connection point that balances
+        /* (rus-N39) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_r_1_t*mu_3_o_r0_y;
         const real G_o_t_2 = inv_rus_platform_joint_offset_x*mu_3_o_z;
-        /* (rus-N35) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rus-N42) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = B_3_o_xy*h_3_z + alpha_2_o_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) +
             inv_v_1_t*(N_1_o_z + G_o_t_2*v_1_t_2 - G_o_t*v_1_z);
         const real c_o_y = alpha_2_o_t*h_3_y - G_o_t_2 - B_3_o_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3);
         const real c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x;
-        /* (rus-N37) velocity and gravity terms of the leg force */
+        /* (rus-N44) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_rus_axes3_x*c_o_x - axis_y_rus_axes3_in_base_x*c_o_y -
             axis_z_rus_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_rus_axes3_y*c_o_x - axis_y_rus_axes3_in_base_y*c_o_y -
@@ -1173,13 +1159,13 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
         /* (rus-V6) reciprocal vector 1 */
-        const real w_1_t_7 = axis_x_rus_axes3_x*inv_v_1_t;
-        const real w_1_t_8 = axis_x_rus_axes3_y*inv_v_1_t;
-        const real w_1_t_9 = axis_x_rus_axes3_z*inv_v_1_t;
+        const real w_1_t_3 = axis_x_rus_axes3_x*inv_v_1_t;
+        const real w_1_t_4 = axis_x_rus_axes3_y*inv_v_1_t;
+        const real w_1_t_5 = axis_x_rus_axes3_z*inv_v_1_t;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_z*w_1_t_8 - q_in_base_y*w_1_t_9;
-        const real H_a_1_y = q_in_base_x*w_1_t_9 - q_in_base_z*w_1_t_7;
-        const real H_a_1_z = q_in_base_y*w_1_t_7 - q_in_base_x*w_1_t_8;
+        const real H_a_1_x = q_in_base_z*w_1_t_4 - q_in_base_y*w_1_t_5;
+        const real H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3;
+        const real H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4;
         o->sum[0][k] = Q_t_12;  /* total_rus_xx */
         o->sum[1][k] = Q_t_13;  /* total_rus_xy */
         o->sum[2][k] = Q_t_14;  /* total_rus_xz */
@@ -1207,9 +1193,9 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         o->sum[24][k] = Z_a_t;  /* total_rus_x_2 */
         o->sum[25][k] = Z_a_t_2;  /* total_rus_y_2 */
         o->sum[26][k] = Z_a_t_3;  /* total_rus_z_2 */
-        o->entry[0][k] = -w_1_t_7;
-        o->entry[1][k] = -w_1_t_8;
-        o->entry[2][k] = -w_1_t_9;
+        o->entry[0][k] = -w_1_t_3;
+        o->entry[1][k] = -w_1_t_4;
+        o->entry[2][k] = -w_1_t_5;
         o->entry[3][k] = H_a_1_x;
         o->entry[4][k] = H_a_1_y;
         o->entry[5][k] = H_a_1_z;
@@ -1399,7 +1385,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 1575 mul, 1077 add, 24 div, 12 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 1293 mul, 903 add, 24 div, 12 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1527,18 +1513,16 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
         const real J_3_xx = m->J_3_xx[i];
         const real J_3_xy = m->J_3_xy[i];
         const real J_3_xz = m->J_3_xz[i];
-        const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
         const real Kd_1_t_2 = m->Kd_1_t_2[i];
         const real Kd_1_t_3 = m->Kd_1_t_3[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real d_mu_3_t = m->d_mu_3_t[i];
-        const real d_mu_3_t_2 = m->d_mu_3_t_2[i];
-        const real d_mu_3_t_3 = m->d_mu_3_t_3[i];
+        const real d_Gamma_3_t = m->d_Gamma_3_t[i];
+        const real d_Gamma_3_y = m->d_Gamma_3_y[i];
+        const real d_c_yy = m->d_c_yy[i];
         const real d_phi_3_t = m->d_phi_3_t[i];
-        const real d_phi_3_t_2 = m->d_phi_3_t_2[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -1622,6 +1606,8 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
         const real r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2;
         /* (rus-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_t = c_3*r_1_r0_x;
+        const real v_1_t_2 = r_1_r0_x*s_3;
+        const real v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3);
         /* (rus-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1 = 1/rho2_1;
         const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
@@ -1652,65 +1638,52 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
+        /* (rus-G6) inertia tensor of link 3 about the connection point */
+        const real _y = J_3_xy*s_3 + J_3_yz*c_3;
+        const real _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3);
+        /* (rus-V6) reciprocal vector 1 */
         const real inv_v_1_t = 1/v_1_t;
-        const real w_1_t_3 = c_3*inv_v_1_t;
-        const real w_1_t_4 = inv_v_1_t*s_3;
-        const real w_1_t_5 = s_2*w_1_t_3;
-        const real w_1_t_6 = c_2*w_1_t_3;
         /* (rus-V7) reciprocal vector 2 */
         const real inv_r_1_t = 1/r_1_t;
-        const real w_2_t = inv_r_1_t*inv_v_1_t*(c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) +
-            s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3));
-        /* (rus-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_zx = inv_r_1_t + s_2*w_1_t_6 - c_2*w_1_t_5;
-        const real d_alpha_2_zy = c_2*w_1_t_6 + s_2*w_1_t_5 - c_3*w_2_t;
-        const real d_alpha_2_zz = s_3*w_2_t - w_1_t_4;
+        const real w_2_t = inv_r_1_t*inv_v_1_t*v_1_z;
         /* (rus-V8) reciprocal vector 3 */
-        const real w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*r_1_r0_x*s_3;
-        /* (rus-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_t = d_alpha_2_zy*s_3;
-        const real d_alpha_2_t_2 = c_3*d_alpha_2_zy;
-        const real d_alpha_2_t_3 = d_alpha_2_zz*s_3;
-        const real d_alpha_2_t_4 = c_3*d_alpha_2_zz;
-        const real d_alpha_2_t_5 = d_alpha_2_zx*s_3;
-        const real d_alpha_2_t_6 = c_3*d_alpha_2_zx;
-        const real _x = d_alpha_2_t_3*s_3 - c_3*d_alpha_2_t;
-        const real _y = -c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3;
-        const real _x_2 = c_3*d_alpha_2_t_2 - d_alpha_2_t_4*s_3;
-        const real _y_2 = c_3*d_alpha_2_t_4 + d_alpha_2_t_2*s_3;
-        /* (rus-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6;
-        const real d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2;
-        const real _y_3 = -c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) -
-            s_3*(J_3_xy*w_3_t + J_3_xz*_x_2 - J_3_xx*_x);
-        const real _y_4 = c_3*(d_mu_3_t_2 + J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y -
-            h_3_y - J_3_xz*_y_2);
-        const real _y_5 = s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) - c_3*(-h_3_x
-            - J_3_xz*d_alpha_2_t_5 - J_3_zz*d_alpha_2_t_6);
-        const real _x_3 = -_y_3*c_3 - _y_4*s_3;
-        /* (rus-N25) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_zx = _y_5*c_2 - J_1_zz*w_1_t_5 - _x_3*s_2;
-        const real d_N_1_zy = J_1_zz*w_1_t_6 + _x_3*c_2 + _y_5*s_2;
-        const real d_N_1_zz = _y_3*s_3 - J_1_zz*w_1_t_4 - _y_4*c_3;
-        /* (rus-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        const real w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*v_1_t_2;
+        /* (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = c_2*d_N_1_zy - d_N_1_zx*s_2;
-        /* (rus-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_1_t = c_3*h_3_y;
+        const real d_Gamma_1_t_2 = _y_2*inv_r_1_t;
+        const real d_Gamma_1_t_3 = _y*inv_rus_platform_joint_offset_x;
+        const real d_Gamma_1_t_4 = d_Gamma_1_t_2*v_1_z;
+        const real d_Gamma_1_t_5 = d_Gamma_1_t_3*v_1_t_2;
+        const real d_Gamma_1_x = -d_Gamma_1_t - inv_v_1_t*(J_1_zz + _y_2 + d_Gamma_1_t_5 -
+            d_Gamma_1_t_4);
+        const real d_Gamma_1_y = d_Gamma_1_t_3 - h_3_y*s_3;
+        const real d_Gamma_1_z = d_Gamma_1_t_2 + c_3*h_3_x - h_3_z*s_3;
+        /* (rus-N26) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_x = -d_Gamma_1_t - inv_v_1_t*(_y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4);
+        /* (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t_2 = _y*inv_r_1_t;
+        const real d_Gamma_3_x = h_3_z - inv_v_1_t*(_y + d_Gamma_3_t*v_1_t_2 -
+            d_Gamma_3_t_2*v_1_z);
+        /* (rus-A23) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = inv_r_1_t*s_3;
+        const real d_alpha_3_t_2 = c_3*inv_r_1_t;
+        /* (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = h_3_z*w_3_t + inv_v_1_t*(d_N_1_zz*s_3 - c_3*d_Gamma_1_r0_y) +
-            w_3_t*(h_3_z + J_3_xy*_x - J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y - _y_3*w_2_t;
-        const real d_c_xy = d_mu_3_zy*w_3_t + inv_v_1_t*(-c_3*d_N_1_zz - d_Gamma_1_r0_y*s_3) -
-            d_phi_3_t - _y_2*h_3_y - _y_4*w_2_t;
-        const real d_c_xz = d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t + inv_v_1_t*(c_2*d_N_1_zx +
-            d_N_1_zy*s_2) - _y_5*w_2_t;
-        const real d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_rus_platform_joint_offset_x;
-        /* (rus-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_rus_platform_joint_offset_x -
-            _y*h_3_y;
+        const real d_c_xx = d_Gamma_1_x*inv_v_1_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t -
+            d_Gamma_2_x*w_2_t - h_3_y*(c_3*inv_v_1_t - c_3*w_2_t);
+        const real d_c_xy = d_Gamma_1_y*inv_v_1_t + d_Gamma_3_y*w_3_t - d_phi_3_t -
+            d_Gamma_1_y*w_2_t;
+        const real d_c_xz = d_Gamma_1_z*inv_v_1_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y -
+            d_Gamma_1_z*w_2_t;
+        const real d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_rus_platform_joint_offset_x;
+        /* (rus-N43) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx - d_c_yy;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + _y_5*inv_r_1_t + d_alpha_2_t_6*h_3_x - d_alpha_2_t_5*h_3_z;
+        const real Q_t_3 = d_c_xx + d_Gamma_1_z*inv_r_1_t + d_alpha_3_t_2*h_3_x -
+            d_alpha_3_t*h_3_z;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_rus_axes3_x*d_c_xy + axis_z_rus_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_rus_axes3_in_base_x;
@@ -2275,7 +2248,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rus-A11) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_v_1_t*rel_o_x;
         const real qdd_3_o = inv_rus_platform_joint_offset_x*(qdd_1_o*v_1_t_2 - rel_o_y);
-        /* (rus-N23) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rus-N31) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x;
         /* (rus-N4) remainder without the acceleration in: acceleration of the reference point of link 3,
@@ -2284,19 +2257,19 @@ INLINE void Z_legs_rus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real acc_3_o_x = u_1_tip_x + c_3*g_r2_y - g_r0_z*s_3;
         const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r2_y*s_3;
         const real acc_3_o_z = u_1_tip_z - c_2*g_r1_x - g_r1_y*s_2;
-        /* (rus-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rus-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_z = inv_r_1_t*(rel_o_z + qdd_1_o*v_1_z) - qdd_1_o;
         const real alpha_2_o_t = alpha_2_o_z*s_3;
         const real alpha_2_o_t_2 = alpha_2_o_z*c_3;
-        /* (rus-A26) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rus-A24) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_2_o_t - zeta_3_x;
         const real alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y;
-        /* (rus-A28) acceleration tensor of link 3 */
+        /* (rus-A26) acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
         const real B_3_o_zy = alpha_3_o_x - zeta_3_x;
-        /* (rus-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rus-N21) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy +
             Sigma_3_zz*alpha_2_o_t - J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_o_y*h_3_y -
@@ -2307,20 +2280,20 @@ INLINE void Z_legs_rus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + J_3_xy*alpha_2_o_t + J_3_yz*alpha_2_o_t_2 +
             acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2);
         const real mu_3_o_r0_y = mu_3_o_x*s_3 - c_3*mu_3_o_y;
-        /* (rus-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rus-N33) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_3_o_r0_y;
-        /* (rus-N32) remainder without the acceleration in: force at the connection point that balances
+        /* (rus-N39) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_r_1_t*mu_3_o_r0_y;
         const real G_o_t_2 = inv_rus_platform_joint_offset_x*mu_3_o_z;
-        /* (rus-N35) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rus-N42) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = B_3_o_xy*h_3_z + alpha_2_o_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) +
             inv_v_1_t*(N_1_o_z + G_o_t_2*v_1_t_2 - G_o_t*v_1_z);
         const real c_o_y = alpha_2_o_t*h_3_y - G_o_t_2 - B_3_o_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3);
         const real c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x;
-        /* (rus-N37) velocity and gravity terms of the leg force */
+        /* (rus-N44) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_rus_axes3_x*c_o_x - axis_y_rus_axes3_in_base_x*c_o_y -
             axis_z_rus_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_rus_axes3_y*c_o_x - axis_y_rus_axes3_in_base_y*c_o_y -
@@ -3088,22 +3061,22 @@ INLINE void required_legs_rus(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
         const real acc_3_z = S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
             axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-N21) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rus-N30) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
             g_r0_x*s_1);
-        /* (rus-A21) angular acceleration of link 2 */
+        /* (rus-A20) angular acceleration of link 2 */
         const real alpha_2_z = inv_r_1_t*(rel_z + qdd_1*v_1_z) - qdd_1;
         const real alpha_2_t = alpha_2_z*s_3;
         const real alpha_2_t_2 = alpha_2_z*c_3;
-        /* (rus-A24) angular acceleration of link 3 */
+        /* (rus-A22) angular acceleration of link 3 */
         const real alpha_3_x = alpha_2_t - zeta_3_x;
         const real alpha_3_y = -alpha_2_t_2 - zeta_3_y;
-        /* (rus-A27) acceleration tensor of link 3 */
+        /* (rus-A25) acceleration tensor of link 3 */
         const real B_3_xy = qdd_3 - W_3_xy;
         const real B_3_yx = -W_3_xy - qdd_3;
         const real B_3_zx = zeta_3_y - alpha_3_y;
         const real B_3_zy = alpha_3_x - zeta_3_x;
-        /* (rus-N10) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rus-N20) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy +
             Sigma_3_zz*alpha_2_t - J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_y*h_3_y - acc_3_z*h_3_z;
         const real mu_3_y = B_3_xy*J_3_yz + acc_3_x*h_3_y - B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz -
@@ -3111,14 +3084,14 @@ INLINE void required_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real mu_3_z = B_3_yx*Sigma_3_xx + J_3_xy*alpha_2_t + J_3_yz*alpha_2_t_2 +
             acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2);
         const real mu_3_r0_y = mu_3_x*s_3 - c_3*mu_3_y;
-        /* (rus-N24) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rus-N32) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_3_r0_y;
-        /* (rus-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (rus-N37) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_r_1_t*mu_3_r0_y;
         const real G_t_2 = inv_rus_platform_joint_offset_x*mu_3_z;
-        /* (rus-N33) leg force on the platform without actuation and without the mass at the connection
+        /* (rus-N40) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = B_3_xy*h_3_z + alpha_2_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) +
             inv_v_1_t*(N_1_z + G_t_2*v_1_t_2 - G_t*v_1_z);
@@ -4425,22 +4398,22 @@ INLINE void legs_legs_rus(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rus_axes3_in_base_y*gravity_y - axis_y_rus_axes3_in_base_z*gravity_z;
         const real acc_3_z = S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x -
             axis_z_rus_axes3_in_base_y*gravity_y - axis_z_rus_axes3_in_base_z*gravity_z;
-        /* (rus-N21) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rus-N30) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
             g_r0_x*s_1);
-        /* (rus-A21) angular acceleration of link 2 */
+        /* (rus-A20) angular acceleration of link 2 */
         const real alpha_2_z = inv_r_1_t*(rel_z + qdd_1*v_1_z) - qdd_1;
         const real alpha_2_t = alpha_2_z*s_3;
         const real alpha_2_t_2 = alpha_2_z*c_3;
-        /* (rus-A24) angular acceleration of link 3 */
+        /* (rus-A22) angular acceleration of link 3 */
         const real alpha_3_x = alpha_2_t - zeta_3_x;
         const real alpha_3_y = -alpha_2_t_2 - zeta_3_y;
-        /* (rus-A27) acceleration tensor of link 3 */
+        /* (rus-A25) acceleration tensor of link 3 */
         const real B_3_xy = qdd_3 - W_3_xy;
         const real B_3_yx = -W_3_xy - qdd_3;
         const real B_3_zx = zeta_3_y - alpha_3_y;
         const real B_3_zy = alpha_3_x - zeta_3_x;
-        /* (rus-N10) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rus-N20) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy +
             Sigma_3_zz*alpha_2_t - J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_y*h_3_y - acc_3_z*h_3_z;
         const real mu_3_y = B_3_xy*J_3_yz + acc_3_x*h_3_y - B_3_zx*Sigma_3_xx - B_3_zy*J_3_xz -
@@ -4448,20 +4421,20 @@ INLINE void legs_legs_rus(const prepared *m, size_t leg, size_t legs, const legs
         const real mu_3_z = B_3_yx*Sigma_3_xx + J_3_xy*alpha_2_t + J_3_yz*alpha_2_t_2 +
             acc_3_x*h_3_z + acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2);
         const real mu_3_r0_y = mu_3_x*s_3 - c_3*mu_3_y;
-        /* (rus-N24) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rus-N32) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_3_r0_y;
-        /* (rus-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (rus-N37) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_r_1_t*mu_3_r0_y;
         const real G_t_2 = inv_rus_platform_joint_offset_x*mu_3_z;
-        /* (rus-N33) leg force on the platform without actuation and without the mass at the connection
+        /* (rus-N40) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = B_3_xy*h_3_z + alpha_2_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) +
             inv_v_1_t*(N_1_z + G_t_2*v_1_t_2 - G_t*v_1_z);
         const real c_y = alpha_2_t*h_3_y - G_t_2 - B_3_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3);
         const real c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x;
-        /* (rus-N38) leg force on the platform without actuation, the last link's mass included */
+        /* (rus-N45) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_3_x*rus_link3_mass;
         const real c_true_y = c_y - acc_3_y*rus_link3_mass;
         const real c_true_z = c_z - acc_3_z*rus_link3_mass;
@@ -4699,12 +4672,13 @@ INLINE void potential_legs_rus(const prepared *m, size_t leg, size_t legs, const
         const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
         /* (rus-K12) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
-        /* (rus-G5) first moment of link 3 about the connection point */
-        const real h_3_r1_x = h_3_z*s_3 - c_3*h_3_x;
+        /* (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t = h_3_z*s_3 - c_3*h_3_x;
         /* (V1) potential energy */
         const real potential_t_3 = g_r0_z*(h_1_z + potential_t + c_3*h_3_z + h_3_x*s_3) +
             (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + c_2*h_3_y + rus_link1_mass*(b_r0_x*c_1 +
-            b_r0_y*s_1) - h_3_r1_x*s_2) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + c_2*h_3_r1_x +
+            b_r0_y*s_1) - d_Gamma_1_t*s_2) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + c_2*d_Gamma_1_t +
             h_3_y*s_2 + rus_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1));
         o->sum[0][k] = potential_t_3;  /* total_rus */
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +

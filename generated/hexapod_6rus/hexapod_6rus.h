@@ -91,18 +91,17 @@ typedef struct {
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
             h_star_z, m_star;
     /* legs of type rus */
-    hexapod_6rus_real J_1_zz[6], J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6],
-            Kd_1_t_2[6], Kd_1_t_3[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6],
-            b_r0_y[6], branch_1[6], branch_2[6], d_mu_3_t[6], d_mu_3_t_2[6], d_mu_3_t_3[6],
-            d_phi_3_t[6], d_phi_3_t_2[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6],
-            h_1_z[6], h_3_x[6], h_3_y[6], h_3_z[6], inv_Kd_1_t_6[6],
-            inv_rus_platform_joint_offset_x[6], inv_uu_3_t[6], potential_t[6], rho2_1_t[6],
-            rus_base_frame_xx[6], rus_base_frame_xy[6], rus_base_frame_xz[6], rus_base_frame_yx[6],
-            rus_base_frame_yy[6], rus_base_frame_yz[6], rus_base_frame_zx[6], rus_base_frame_zy[6],
-            rus_base_frame_zz[6], rus_base_point_x[6], rus_base_point_y[6], rus_base_point_z[6],
-            rus_joint2_offset_x[6], rus_link1_mass[6], rus_link3_mass[6],
-            rus_platform_joint_offset_x[6], rus_platform_point_x[6], rus_platform_point_y[6],
-            rus_platform_point_z[6], size_[6], size_t_6[6];
+    hexapod_6rus_real J_1_zz[6], J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yz[6], J_3_zz[6], Kd_1_t_2[6],
+            Kd_1_t_3[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], b_r0_y[6],
+            branch_1[6], branch_2[6], d_Gamma_3_t[6], d_Gamma_3_y[6], d_c_yy[6], d_phi_3_t[6],
+            g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6], h_1_z[6], h_3_x[6], h_3_y[6],
+            h_3_z[6], inv_Kd_1_t_6[6], inv_rus_platform_joint_offset_x[6], inv_uu_3_t[6],
+            potential_t[6], rho2_1_t[6], rus_base_frame_xx[6], rus_base_frame_xy[6],
+            rus_base_frame_xz[6], rus_base_frame_yx[6], rus_base_frame_yy[6], rus_base_frame_yz[6],
+            rus_base_frame_zx[6], rus_base_frame_zy[6], rus_base_frame_zz[6], rus_base_point_x[6],
+            rus_base_point_y[6], rus_base_point_z[6], rus_joint2_offset_x[6], rus_link1_mass[6],
+            rus_link3_mass[6], rus_platform_joint_offset_x[6], rus_platform_point_x[6],
+            rus_platform_point_y[6], rus_platform_point_z[6], size_[6], size_t_6[6];
 } hexapod_6rus_model;
 
 extern const hexapod_6rus_params hexapod_6rus_default_params;
@@ -114,7 +113,7 @@ extern const hexapod_6rus_real hexapod_6rus_HOME_Q[HEXAPOD_6RUS_NJ];
    model is all NaN. */
 int hexapod_6rus_prepare(const hexapod_6rus_params *params, hexapod_6rus_model *model);
 
-/* Inertia matrix M. 1575 mul, 1077 add, 24 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1293 mul, 903 add, 24 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6rus_M(const hexapod_6rus_model *model, const hexapod_6rus_real *X, hexapod_6rus_real
     *M);
 size_t hexapod_6rus_M_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
@@ -134,7 +133,7 @@ int hexapod_6rus_H(const hexapod_6rus_model *model, const hexapod_6rus_real *X, 
 size_t hexapod_6rus_H_batch(const hexapod_6rus_model *model, size_t n, const hexapod_6rus_real *X,
     hexapod_6rus_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 2511 mul, 1779 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6rus_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X, const
     hexapod_6rus_real *V, hexapod_6rus_real *M, hexapod_6rus_real *Z, hexapod_6rus_real *H);
@@ -174,7 +173,7 @@ size_t hexapod_6rus_inverse_dynamics_batch(const hexapod_6rus_model *model, size
     hexapod_6rus_real *X, const hexapod_6rus_real *V, const hexapod_6rus_real *A, const
     hexapod_6rus_real *wrench, hexapod_6rus_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2511 mul, 1779 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2229 mul, 1605 add, 24 div, 12
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6rus_forward_dynamics(const hexapod_6rus_model *model, const hexapod_6rus_real *X,

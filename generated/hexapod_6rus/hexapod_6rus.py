@@ -401,19 +401,19 @@ def _prepare(p):
     rus_link3_inertia_yz - rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass
     )
     J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rus-V8) reciprocal vector 3
-    inv_rus_platform_joint_offset_x = 1.0/rus_platform_joint_offset_x
     # (rus-G5) first moment of link 3 about the connection point
     h_3_x = rho_tip_3_x*rus_link3_mass
     h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass
     h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass
-    # (rus-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xy*inv_rus_platform_joint_offset_x
-    d_mu_3_t_2 = J_3_yz*inv_rus_platform_joint_offset_x
-    d_mu_3_t_3 = J_3_yy*inv_rus_platform_joint_offset_x
+    # (rus-V8) reciprocal vector 3
+    inv_rus_platform_joint_offset_x = 1.0/rus_platform_joint_offset_x
+    # (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = J_3_yy*inv_rus_platform_joint_offset_x
+    d_Gamma_3_y = d_Gamma_3_t + h_3_x
     # (rus-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
     d_phi_3_t = h_3_z*inv_rus_platform_joint_offset_x
-    d_phi_3_t_2 = h_3_x*inv_rus_platform_joint_offset_x
+    # (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_yy = -d_Gamma_3_y*inv_rus_platform_joint_offset_x - h_3_x*inv_rus_platform_joint_offset_x
     # (L2) first moment about the platform origin
     h_star_t_4 = rus_link3_mass*rus_platform_point_x
     h_star_t_5 = rus_link3_mass*rus_platform_point_y
@@ -439,9 +439,9 @@ def _prepare(p):
     h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass
     h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass
     h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass
-    # (rus-N8) half the trace of that inertia tensor
+    # (rus-N18) half the trace of that inertia tensor
     trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rus-N9) second moment of mass of the links that turn with link 3
+    # (rus-N19) second moment of mass of the links that turn with link 3
     Sigma_3_xx = trace_J_3 - J_3_xx
     Sigma_3_yy = trace_J_3 - J_3_zz
     Sigma_3_zz = trace_J_3 - J_3_yy
@@ -515,7 +515,6 @@ def _prepare(p):
             "J_3_xx": np.broadcast_to(J_3_xx, _rus),
             "J_3_xy": np.broadcast_to(J_3_xy, _rus),
             "J_3_xz": np.broadcast_to(J_3_xz, _rus),
-            "J_3_yy": np.broadcast_to(J_3_yy, _rus),
             "J_3_yz": np.broadcast_to(J_3_yz, _rus),
             "J_3_zz": np.broadcast_to(J_3_zz, _rus),
             "Kd_1_t_2": np.broadcast_to(Kd_1_t_2, _rus),
@@ -527,11 +526,10 @@ def _prepare(p):
             "b_r0_y": np.broadcast_to(b_r0_y, _rus),
             "branch_1": np.broadcast_to(branch_1, _rus),
             "branch_2": np.broadcast_to(branch_2, _rus),
-            "d_mu_3_t": np.broadcast_to(d_mu_3_t, _rus),
-            "d_mu_3_t_2": np.broadcast_to(d_mu_3_t_2, _rus),
-            "d_mu_3_t_3": np.broadcast_to(d_mu_3_t_3, _rus),
+            "d_Gamma_3_t": np.broadcast_to(d_Gamma_3_t, _rus),
+            "d_Gamma_3_y": np.broadcast_to(d_Gamma_3_y, _rus),
+            "d_c_yy": np.broadcast_to(d_c_yy, _rus),
             "d_phi_3_t": np.broadcast_to(d_phi_3_t, _rus),
-            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, _rus),
             "g_r0_x": np.broadcast_to(g_r0_x, _rus),
             "g_r0_y": np.broadcast_to(g_r0_y, _rus),
             "g_r0_z": np.broadcast_to(g_r0_z, _rus),
@@ -720,7 +718,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 2511 mul, 1779 add, 24 div, 12 sqrt, 0 trig
+# dynamics: 2229 mul, 1605 add, 24 div, 12 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -828,9 +826,9 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rus(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx,
-        Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_mu_3_t, d_mu_3_t_2, d_mu_3_t_3, d_phi_3_t,
-        d_phi_3_t_2, g_r0_x, g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
+    J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, Sigma_3_xx, Sigma_3_yy,
+        Sigma_3_zz, branch_1, branch_2, d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, g_r0_x,
+        g_r0_y, g_r0_z, h_1_x, h_1_y, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
         inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
         rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
         rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
@@ -947,69 +945,45 @@ def _dynamics_rus(c, k, x, s, f):
     axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
     )
+    # (rus-G6) inertia tensor of link 3 about the connection point
+    _y = J_3_xy*s_3 + J_3_yz*c_3
+    _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3)
+    # (rus-V6) reciprocal vector 1
     inv_v_1_t = 1.0/v_1_t
-    w_1_t_3 = c_3*inv_v_1_t
-    w_1_t_4 = inv_v_1_t*s_3
-    w_1_t_5 = s_2*w_1_t_3
-    w_1_t_6 = c_2*w_1_t_3
     # (rus-V7) reciprocal vector 2
     inv_r_1_t = 1.0/r_1_t
     w_2_t = inv_r_1_t*inv_v_1_t*v_1_z
-    # (rus-A22) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_zx = inv_r_1_t + s_2*w_1_t_6 - c_2*w_1_t_5
-    d_alpha_2_zy = c_2*w_1_t_6 + s_2*w_1_t_5 - c_3*w_2_t
-    d_alpha_2_zz = s_3*w_2_t - w_1_t_4
     # (rus-V8) reciprocal vector 3
     w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*v_1_t_2
-    # (rus-A22) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_t = d_alpha_2_zy*s_3
-    d_alpha_2_t_2 = c_3*d_alpha_2_zy
-    d_alpha_2_t_3 = d_alpha_2_zz*s_3
-    d_alpha_2_t_4 = c_3*d_alpha_2_zz
-    d_alpha_2_t_5 = d_alpha_2_zx*s_3
-    d_alpha_2_t_6 = c_3*d_alpha_2_zx
-    _x = d_alpha_2_t_3*s_3 - c_3*d_alpha_2_t
-    _y = -c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3
-    _x_2 = c_3*d_alpha_2_t_2 - d_alpha_2_t_4*s_3
-    _y_2 = c_3*d_alpha_2_t_4 + d_alpha_2_t_2*s_3
-    # (rus-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6
-    d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2
-    _y_3 = (
-    -c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) - s_3*(J_3_xy*w_3_t + J_3_xz*_x_2 -
-        J_3_xx*_x)
-    )
-    _y_4 = (
-    c_3*(d_mu_3_t_2 + J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y - h_3_y - J_3_xz*_y_2)
-    )
-    _y_5 = (
-    s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) - c_3*(-h_3_x - J_3_xz*d_alpha_2_t_5
-        - J_3_zz*d_alpha_2_t_6)
-    )
-    _x_3 = -_y_3*c_3 - _y_4*s_3
-    # (rus-N25) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_zx = _y_5*c_2 - J_1_zz*w_1_t_5 - _x_3*s_2
-    d_N_1_zy = J_1_zz*w_1_t_6 + _x_3*c_2 + _y_5*s_2
-    d_N_1_zz = _y_3*s_3 - J_1_zz*w_1_t_4 - _y_4*c_3
-    # (rus-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = c_2*d_N_1_zy - d_N_1_zx*s_2
-    # (rus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = c_3*h_3_y
+    d_Gamma_1_t_2 = _y_2*inv_r_1_t
+    d_Gamma_1_t_3 = _y*inv_rus_platform_joint_offset_x
+    d_Gamma_1_t_4 = d_Gamma_1_t_2*v_1_z
+    d_Gamma_1_t_5 = d_Gamma_1_t_3*v_1_t_2
+    d_Gamma_1_x = -d_Gamma_1_t - inv_v_1_t*(J_1_zz + _y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
+    d_Gamma_1_y = d_Gamma_1_t_3 - h_3_y*s_3
+    d_Gamma_1_z = d_Gamma_1_t_2 + c_3*h_3_x - h_3_z*s_3
+    # (rus-N26) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_x = -d_Gamma_1_t - inv_v_1_t*(_y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
+    # (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t_2 = _y*inv_r_1_t
+    d_Gamma_3_x = h_3_z - inv_v_1_t*(_y + d_Gamma_3_t*v_1_t_2 - d_Gamma_3_t_2*v_1_z)
+    # (rus-A23) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = inv_r_1_t*s_3
+    d_alpha_3_t_2 = c_3*inv_r_1_t
+    # (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    h_3_z*w_3_t + inv_v_1_t*(d_N_1_zz*s_3 - c_3*d_Gamma_1_r0_y) + w_3_t*(h_3_z + J_3_xy*_x -
-        J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y - _y_3*w_2_t
+    d_Gamma_1_x*inv_v_1_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t - d_Gamma_2_x*w_2_t -
+        h_3_y*(c_3*inv_v_1_t - c_3*w_2_t)
     )
-    d_c_xy = (
-    d_mu_3_zy*w_3_t + inv_v_1_t*(-c_3*d_N_1_zz - d_Gamma_1_r0_y*s_3) - d_phi_3_t - _y_2*h_3_y -
-        _y_4*w_2_t
-    )
-    d_c_xz = (
-    d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t + inv_v_1_t*(c_2*d_N_1_zx + d_N_1_zy*s_2) - _y_5*w_2_t
-    )
-    d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_rus_platform_joint_offset_x
-    # (rus-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_rus_platform_joint_offset_x - _y*h_3_y
+    d_c_xy = d_Gamma_1_y*inv_v_1_t + d_Gamma_3_y*w_3_t - d_phi_3_t - d_Gamma_1_y*w_2_t
+    d_c_xz = d_Gamma_1_z*inv_v_1_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y - d_Gamma_1_z*w_2_t
+    d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_rus_platform_joint_offset_x
+    # (rus-N43) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + _y_5*inv_r_1_t + d_alpha_2_t_6*h_3_x - d_alpha_2_t_5*h_3_z
+    Q_t_3 = d_c_xx + d_Gamma_1_z*inv_r_1_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_rus_axes3_x*d_c_xy + axis_z_rus_axes3_in_base_x*d_c_yz -
@@ -1133,26 +1107,26 @@ def _dynamics_rus(c, k, x, s, f):
     # (rus-A11) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = inv_v_1_t*rel_o_x
     qdd_3_o = inv_rus_platform_joint_offset_x*(qdd_1_o*v_1_t_2 - rel_o_y)
-    # (rus-N23) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rus-N31) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x
     # (rus-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r2_y = c_2*g_r1_y - g_r1_x*s_2
     acc_3_o_x = u_1_tip_x + c_3*g_r2_y - g_r0_z*s_3
     acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r2_y*s_3
     acc_3_o_z = u_1_tip_z - c_2*g_r1_x - g_r1_y*s_2
-    # (rus-A23) remainder without the acceleration in: angular acceleration of link 2
+    # (rus-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_z = inv_r_1_t*(rel_o_z + qdd_1_o*v_1_z) - qdd_1_o
     alpha_2_o_t = alpha_2_o_z*s_3
     alpha_2_o_t_2 = alpha_2_o_z*c_3
-    # (rus-A26) remainder without the acceleration in: angular acceleration of link 3
+    # (rus-A24) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_2_o_t - zeta_3_x
     alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y
-    # (rus-A28) acceleration tensor of link 3
+    # (rus-A26) acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y
     B_3_o_zy = alpha_3_o_x - zeta_3_x
-    # (rus-N12) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rus-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_o_t -
         J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
@@ -1166,19 +1140,19 @@ def _dynamics_rus(c, k, x, s, f):
         acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
     )
     mu_3_o_r0_y = mu_3_o_x*s_3 - c_3*mu_3_o_y
-    # (rus-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rus-N33) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + mu_3_o_r0_y
-    # (rus-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rus-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_r_1_t*mu_3_o_r0_y
     G_o_t_2 = inv_rus_platform_joint_offset_x*mu_3_o_z
-    # (rus-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rus-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     B_3_o_xy*h_3_z + alpha_2_o_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_o_z +
         G_o_t_2*v_1_t_2 - G_o_t*v_1_z)
     )
     c_o_y = alpha_2_o_t*h_3_y - G_o_t_2 - B_3_o_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
     c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-    # (rus-N37) velocity and gravity terms of the leg force
+    # (rus-N44) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rus_axes3_x*c_o_x - axis_y_rus_axes3_in_base_x*c_o_y -
         axis_z_rus_axes3_in_base_x*c_o_z
@@ -1196,19 +1170,19 @@ def _dynamics_rus(c, k, x, s, f):
     Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
     Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (rus-V6) reciprocal vector 1
-    w_1_t_7 = axis_x_rus_axes3_x*inv_v_1_t
-    w_1_t_8 = axis_x_rus_axes3_y*inv_v_1_t
-    w_1_t_9 = axis_x_rus_axes3_z*inv_v_1_t
+    w_1_t_3 = axis_x_rus_axes3_x*inv_v_1_t
+    w_1_t_4 = axis_x_rus_axes3_y*inv_v_1_t
+    w_1_t_5 = axis_x_rus_axes3_z*inv_v_1_t
     # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_z*w_1_t_8 - q_in_base_y*w_1_t_9
-    H_a_1_y = q_in_base_x*w_1_t_9 - q_in_base_z*w_1_t_7
-    H_a_1_z = q_in_base_y*w_1_t_7 - q_in_base_x*w_1_t_8
+    H_a_1_x = q_in_base_z*w_1_t_4 - q_in_base_y*w_1_t_5
+    H_a_1_y = q_in_base_x*w_1_t_5 - q_in_base_z*w_1_t_3
+    H_a_1_z = q_in_base_y*w_1_t_3 - q_in_base_x*w_1_t_4
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(r_1_t) > _TOLERANCE * size) & (abs(-v_1_t) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
         M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
         M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (-w_1_t_7, -w_1_t_8, -w_1_t_9, H_a_1_x, H_a_1_y, H_a_1_z,),
+        (-w_1_t_3, -w_1_t_4, -w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z,),
     )
 
 
@@ -1263,7 +1237,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 1575 mul, 1077 add, 24 div, 12 sqrt, 0 trig
+# M: 1293 mul, 903 add, 24 div, 12 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1334,9 +1308,9 @@ def _M_before(c, X, f):
 def _M_rus(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, branch_1,
-        branch_2, d_mu_3_t, d_mu_3_t_2, d_mu_3_t_3, d_phi_3_t, d_phi_3_t_2, h_3_x, h_3_y, h_3_z,
-        inv_Kd_1_t_6, inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
+    J_1_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yz, J_3_zz, Kd_1_t_2, Kd_1_t_3, branch_1, branch_2,
+        d_Gamma_3_t, d_Gamma_3_y, d_c_yy, d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_Kd_1_t_6,
+        inv_rus_platform_joint_offset_x, inv_uu_3_t, rho2_1_t, rus_base_frame_xx,
         rus_base_frame_xy, rus_base_frame_xz, rus_base_frame_yx, rus_base_frame_yy,
         rus_base_frame_yz, rus_base_frame_zx, rus_base_frame_zy, rus_base_frame_zz,
         rus_base_point_x, rus_base_point_y, rus_base_point_z, rus_joint2_offset_x,
@@ -1402,6 +1376,8 @@ def _M_rus(c, k, x, s, f):
     r_1_r0_y = -c_2*r_1_t_3 - r_1_x*s_2
     # (rus-V3) velocity of the connection point per rate of joint 1
     v_1_t = c_3*r_1_r0_x
+    v_1_t_2 = r_1_r0_x*s_3
+    v_1_z = c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3)
     # (rus-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1 = 1.0/rho2_1
     c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
@@ -1447,71 +1423,45 @@ def _M_rus(c, k, x, s, f):
     axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
         axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x
     )
+    # (rus-G6) inertia tensor of link 3 about the connection point
+    _y = J_3_xy*s_3 + J_3_yz*c_3
+    _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3)
+    # (rus-V6) reciprocal vector 1
     inv_v_1_t = 1.0/v_1_t
-    w_1_t_3 = c_3*inv_v_1_t
-    w_1_t_4 = inv_v_1_t*s_3
-    w_1_t_5 = s_2*w_1_t_3
-    w_1_t_6 = c_2*w_1_t_3
     # (rus-V7) reciprocal vector 2
     inv_r_1_t = 1.0/r_1_t
-    w_2_t = (
-    inv_r_1_t*inv_v_1_t*(c_3*(r_1_t_2*s_3 - c_3*r_1_r0_y) + s_3*(-c_3*r_1_t_2 - r_1_r0_y*s_3))
-    )
-    # (rus-A22) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_zx = inv_r_1_t + s_2*w_1_t_6 - c_2*w_1_t_5
-    d_alpha_2_zy = c_2*w_1_t_6 + s_2*w_1_t_5 - c_3*w_2_t
-    d_alpha_2_zz = s_3*w_2_t - w_1_t_4
+    w_2_t = inv_r_1_t*inv_v_1_t*v_1_z
     # (rus-V8) reciprocal vector 3
-    w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*r_1_r0_x*s_3
-    # (rus-A22) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_t = d_alpha_2_zy*s_3
-    d_alpha_2_t_2 = c_3*d_alpha_2_zy
-    d_alpha_2_t_3 = d_alpha_2_zz*s_3
-    d_alpha_2_t_4 = c_3*d_alpha_2_zz
-    d_alpha_2_t_5 = d_alpha_2_zx*s_3
-    d_alpha_2_t_6 = c_3*d_alpha_2_zx
-    _x = d_alpha_2_t_3*s_3 - c_3*d_alpha_2_t
-    _y = -c_3*d_alpha_2_t_3 - d_alpha_2_t*s_3
-    _x_2 = c_3*d_alpha_2_t_2 - d_alpha_2_t_4*s_3
-    _y_2 = c_3*d_alpha_2_t_4 + d_alpha_2_t_2*s_3
-    # (rus-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t_4 = J_3_xy*d_alpha_2_t_5 + J_3_yz*d_alpha_2_t_6
-    d_mu_3_zy = d_mu_3_t_3 + h_3_x + J_3_xy*_y - J_3_yz*_y_2
-    _y_3 = (
-    -c_3*(h_3_y + J_3_yz*w_3_t + J_3_zz*_x_2 - J_3_xz*_x) - s_3*(J_3_xy*w_3_t + J_3_xz*_x_2 -
-        J_3_xx*_x)
-    )
-    _y_4 = (
-    c_3*(d_mu_3_t_2 + J_3_xz*_y - J_3_zz*_y_2) + s_3*(d_mu_3_t + J_3_xx*_y - h_3_y - J_3_xz*_y_2)
-    )
-    _y_5 = (
-    s_3*(J_3_xx*d_alpha_2_t_5 + J_3_xz*d_alpha_2_t_6 - h_3_z) - c_3*(-h_3_x - J_3_xz*d_alpha_2_t_5
-        - J_3_zz*d_alpha_2_t_6)
-    )
-    _x_3 = -_y_3*c_3 - _y_4*s_3
-    # (rus-N25) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_zx = _y_5*c_2 - J_1_zz*w_1_t_5 - _x_3*s_2
-    d_N_1_zy = J_1_zz*w_1_t_6 + _x_3*c_2 + _y_5*s_2
-    d_N_1_zz = _y_3*s_3 - J_1_zz*w_1_t_4 - _y_4*c_3
-    # (rus-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = c_2*d_N_1_zy - d_N_1_zx*s_2
-    # (rus-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    w_3_t = inv_rus_platform_joint_offset_x*inv_v_1_t*v_1_t_2
+    # (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = c_3*h_3_y
+    d_Gamma_1_t_2 = _y_2*inv_r_1_t
+    d_Gamma_1_t_3 = _y*inv_rus_platform_joint_offset_x
+    d_Gamma_1_t_4 = d_Gamma_1_t_2*v_1_z
+    d_Gamma_1_t_5 = d_Gamma_1_t_3*v_1_t_2
+    d_Gamma_1_x = -d_Gamma_1_t - inv_v_1_t*(J_1_zz + _y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
+    d_Gamma_1_y = d_Gamma_1_t_3 - h_3_y*s_3
+    d_Gamma_1_z = d_Gamma_1_t_2 + c_3*h_3_x - h_3_z*s_3
+    # (rus-N26) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_x = -d_Gamma_1_t - inv_v_1_t*(_y_2 + d_Gamma_1_t_5 - d_Gamma_1_t_4)
+    # (rus-N23) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t_2 = _y*inv_r_1_t
+    d_Gamma_3_x = h_3_z - inv_v_1_t*(_y + d_Gamma_3_t*v_1_t_2 - d_Gamma_3_t_2*v_1_z)
+    # (rus-A23) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = inv_r_1_t*s_3
+    d_alpha_3_t_2 = c_3*inv_r_1_t
+    # (rus-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    h_3_z*w_3_t + inv_v_1_t*(d_N_1_zz*s_3 - c_3*d_Gamma_1_r0_y) + w_3_t*(h_3_z + J_3_xy*_x -
-        J_3_yy*w_3_t - J_3_yz*_x_2) - _x_2*h_3_y - _y_3*w_2_t
+    d_Gamma_1_x*inv_v_1_t + d_Gamma_3_x*w_3_t + h_3_z*w_3_t - d_Gamma_2_x*w_2_t -
+        h_3_y*(c_3*inv_v_1_t - c_3*w_2_t)
     )
-    d_c_xy = (
-    d_mu_3_zy*w_3_t + inv_v_1_t*(-c_3*d_N_1_zz - d_Gamma_1_r0_y*s_3) - d_phi_3_t - _y_2*h_3_y -
-        _y_4*w_2_t
-    )
-    d_c_xz = (
-    d_alpha_2_t_6*h_3_y + d_mu_3_t_4*w_3_t + inv_v_1_t*(c_2*d_N_1_zx + d_N_1_zy*s_2) - _y_5*w_2_t
-    )
-    d_c_yz = d_alpha_2_t_5*h_3_y - d_mu_3_t_4*inv_rus_platform_joint_offset_x
-    # (rus-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_phi_3_t_2 + d_mu_3_zy*inv_rus_platform_joint_offset_x - _y*h_3_y
+    d_c_xy = d_Gamma_1_y*inv_v_1_t + d_Gamma_3_y*w_3_t - d_phi_3_t - d_Gamma_1_y*w_2_t
+    d_c_xz = d_Gamma_1_z*inv_v_1_t + d_Gamma_3_t_2*w_3_t + d_alpha_3_t_2*h_3_y - d_Gamma_1_z*w_2_t
+    d_c_yz = d_alpha_3_t*h_3_y - d_Gamma_3_t_2*inv_rus_platform_joint_offset_x
+    # (rus-N43) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + _y_5*inv_r_1_t + d_alpha_2_t_6*h_3_x - d_alpha_2_t_5*h_3_z
+    Q_t_3 = d_c_xx + d_Gamma_1_z*inv_r_1_t + d_alpha_3_t_2*h_3_x - d_alpha_3_t*h_3_z
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_rus_axes3_x*d_c_xy + axis_z_rus_axes3_in_base_x*d_c_yz -
@@ -1895,26 +1845,26 @@ def _Z_rus(c, k, x, s, f):
     # (rus-A11) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = inv_v_1_t*rel_o_x
     qdd_3_o = inv_rus_platform_joint_offset_x*(qdd_1_o*v_1_t_2 - rel_o_y)
-    # (rus-N23) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rus-N31) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x
     # (rus-N4) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r2_y = c_2*g_r1_y - g_r1_x*s_2
     acc_3_o_x = u_1_tip_x + c_3*g_r2_y - g_r0_z*s_3
     acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r2_y*s_3
     acc_3_o_z = u_1_tip_z - c_2*g_r1_x - g_r1_y*s_2
-    # (rus-A23) remainder without the acceleration in: angular acceleration of link 2
+    # (rus-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_z = inv_r_1_t*(rel_o_z + qdd_1_o*v_1_z) - qdd_1_o
     alpha_2_o_t = alpha_2_o_z*s_3
     alpha_2_o_t_2 = alpha_2_o_z*c_3
-    # (rus-A26) remainder without the acceleration in: angular acceleration of link 3
+    # (rus-A24) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_2_o_t - zeta_3_x
     alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y
-    # (rus-A28) acceleration tensor of link 3
+    # (rus-A26) acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y
     B_3_o_zy = alpha_3_o_x - zeta_3_x
-    # (rus-N12) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rus-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xy + B_3_o_zx*J_3_xz + B_3_o_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_o_t -
         J_3_yz*(W_3_t_2 - W_3_t_3) - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z
@@ -1928,19 +1878,19 @@ def _Z_rus(c, k, x, s, f):
         acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
     )
     mu_3_o_r0_y = mu_3_o_x*s_3 - c_3*mu_3_o_y
-    # (rus-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rus-N33) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + mu_3_o_r0_y
-    # (rus-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rus-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_r_1_t*mu_3_o_r0_y
     G_o_t_2 = inv_rus_platform_joint_offset_x*mu_3_o_z
-    # (rus-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rus-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     B_3_o_xy*h_3_z + alpha_2_o_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_o_z +
         G_o_t_2*v_1_t_2 - G_o_t*v_1_z)
     )
     c_o_y = alpha_2_o_t*h_3_y - G_o_t_2 - B_3_o_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
     c_o_z = B_3_o_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_o_t - B_3_o_zx*h_3_x
-    # (rus-N37) velocity and gravity terms of the leg force
+    # (rus-N44) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rus_axes3_x*c_o_x - axis_y_rus_axes3_in_base_x*c_o_y -
         axis_z_rus_axes3_in_base_x*c_o_z
@@ -2486,21 +2436,21 @@ def _required_rus(c, k, x, s, f):
     S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x - axis_z_rus_axes3_in_base_y*gravity_y -
         axis_z_rus_axes3_in_base_z*gravity_z
     )
-    # (rus-N21) inertia moment of the links that turn with link 1, about their reference points
+    # (rus-N30) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-    # (rus-A21) angular acceleration of link 2
+    # (rus-A20) angular acceleration of link 2
     alpha_2_z = inv_r_1_t*(rel_z + qdd_1*v_1_z) - qdd_1
     alpha_2_t = alpha_2_z*s_3
     alpha_2_t_2 = alpha_2_z*c_3
-    # (rus-A24) angular acceleration of link 3
+    # (rus-A22) angular acceleration of link 3
     alpha_3_x = alpha_2_t - zeta_3_x
     alpha_3_y = -alpha_2_t_2 - zeta_3_y
-    # (rus-A27) acceleration tensor of link 3
+    # (rus-A25) acceleration tensor of link 3
     B_3_xy = qdd_3 - W_3_xy
     B_3_yx = -W_3_xy - qdd_3
     B_3_zx = zeta_3_y - alpha_3_y
     B_3_zy = alpha_3_x - zeta_3_x
-    # (rus-N10) inertia moment of the links that turn with link 3, about their reference points
+    # (rus-N20) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_t - J_3_yz*(W_3_t_2 -
         W_3_t_3) - acc_3_y*h_3_y - acc_3_z*h_3_z
@@ -2514,12 +2464,12 @@ def _required_rus(c, k, x, s, f):
         B_3_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
     )
     mu_3_r0_y = mu_3_x*s_3 - c_3*mu_3_y
-    # (rus-N24) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rus-N32) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + mu_3_r0_y
-    # (rus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rus-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_r_1_t*mu_3_r0_y
     G_t_2 = inv_rus_platform_joint_offset_x*mu_3_z
-    # (rus-N33) leg force on the platform without actuation and without the mass at the connection point
+    # (rus-N40) leg force on the platform without actuation and without the mass at the connection point
     c_x = (
     B_3_xy*h_3_z + alpha_2_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_z +
         G_t_2*v_1_t_2 - G_t*v_1_z)
@@ -3403,21 +3353,21 @@ def _legs_rus(c, k, x, s, f):
     S_ddot_tip_z - axis_z_rus_axes3_in_base_x*gravity_x - axis_z_rus_axes3_in_base_y*gravity_y -
         axis_z_rus_axes3_in_base_z*gravity_z
     )
-    # (rus-N21) inertia moment of the links that turn with link 1, about their reference points
+    # (rus-N30) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y - g_r0_x*s_1)
-    # (rus-A21) angular acceleration of link 2
+    # (rus-A20) angular acceleration of link 2
     alpha_2_z = inv_r_1_t*(rel_z + qdd_1*v_1_z) - qdd_1
     alpha_2_t = alpha_2_z*s_3
     alpha_2_t_2 = alpha_2_z*c_3
-    # (rus-A24) angular acceleration of link 3
+    # (rus-A22) angular acceleration of link 3
     alpha_3_x = alpha_2_t - zeta_3_x
     alpha_3_y = -alpha_2_t_2 - zeta_3_y
-    # (rus-A27) acceleration tensor of link 3
+    # (rus-A25) acceleration tensor of link 3
     B_3_xy = qdd_3 - W_3_xy
     B_3_yx = -W_3_xy - qdd_3
     B_3_zx = zeta_3_y - alpha_3_y
     B_3_zy = alpha_3_x - zeta_3_x
-    # (rus-N10) inertia moment of the links that turn with link 3, about their reference points
+    # (rus-N20) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xy + B_3_zx*J_3_xz + B_3_zy*Sigma_3_yy + Sigma_3_zz*alpha_2_t - J_3_yz*(W_3_t_2 -
         W_3_t_3) - acc_3_y*h_3_y - acc_3_z*h_3_z
@@ -3431,19 +3381,19 @@ def _legs_rus(c, k, x, s, f):
         B_3_xy*Sigma_3_yy - J_3_xz*(W_3_t - W_3_t_2)
     )
     mu_3_r0_y = mu_3_x*s_3 - c_3*mu_3_y
-    # (rus-N24) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rus-N32) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + mu_3_r0_y
-    # (rus-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rus-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_r_1_t*mu_3_r0_y
     G_t_2 = inv_rus_platform_joint_offset_x*mu_3_z
-    # (rus-N33) leg force on the platform without actuation and without the mass at the connection point
+    # (rus-N40) leg force on the platform without actuation and without the mass at the connection point
     c_x = (
     B_3_xy*h_3_z + alpha_2_t_2*h_3_y + h_3_x*(W_3_t_2 + W_3_t_3) + inv_v_1_t*(N_1_z +
         G_t_2*v_1_t_2 - G_t*v_1_z)
     )
     c_y = alpha_2_t*h_3_y - G_t_2 - B_3_yx*h_3_x - h_3_z*(W_3_t + W_3_t_3)
     c_z = B_3_zy*h_3_z + h_3_y*(W_3_t + W_3_t_2) - G_t - B_3_zx*h_3_x
-    # (rus-N38) leg force on the platform without actuation, the last link's mass included
+    # (rus-N45) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_3_x*rus_link3_mass
     c_true_y = c_y - acc_3_y*rus_link3_mass
     c_true_z = c_z - acc_3_z*rus_link3_mass
@@ -3579,13 +3529,14 @@ def _potential_rus(c, k, x, s, f):
     c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1)
     # (rus-K12) sine of the angle of joint 1 from its reference direction
     s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1)
-    # (rus-G5) first moment of link 3 about the connection point
-    h_3_r1_x = h_3_z*s_3 - c_3*h_3_x
+    # (rus-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = h_3_z*s_3 - c_3*h_3_x
     # (V1) potential energy
     potential_t_3 = (
     g_r0_z*(h_1_z + potential_t + c_3*h_3_z + h_3_x*s_3) + (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x +
-        c_2*h_3_y + rus_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1) - h_3_r1_x*s_2) + (c_1*g_r0_y -
-        g_r0_x*s_1)*(h_1_y + c_2*h_3_r1_x + h_3_y*s_2 + rus_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1))
+        c_2*h_3_y + rus_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1) - d_Gamma_1_t*s_2) + (c_1*g_r0_y -
+        g_r0_x*s_1)*(h_1_y + c_2*d_Gamma_1_t + h_3_y*s_2 + rus_link1_mass*(b_r0_y*c_1 -
+        b_r0_x*s_1))
     )
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * rho2_1_t) & (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6)
     return (ok, (potential_t_3,), (),)
@@ -3616,16 +3567,16 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             _dynamics_rus,
             "rus",
 (),
-('J_1_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Kd_1_t_2', 'Kd_1_t_3',
-            'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'branch_1', 'branch_2', 'd_mu_3_t',
-            'd_mu_3_t_2', 'd_mu_3_t_3', 'd_phi_3_t', 'd_phi_3_t_2', 'g_r0_x', 'g_r0_y', 'g_r0_z',
-            'h_1_x', 'h_1_y', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_Kd_1_t_6',
-            'inv_rus_platform_joint_offset_x', 'inv_uu_3_t', 'rho2_1_t', 'rus_base_frame_xx',
-            'rus_base_frame_xy', 'rus_base_frame_xz', 'rus_base_frame_yx', 'rus_base_frame_yy',
-            'rus_base_frame_yz', 'rus_base_frame_zx', 'rus_base_frame_zy', 'rus_base_frame_zz',
-            'rus_base_point_x', 'rus_base_point_y', 'rus_base_point_z', 'rus_joint2_offset_x',
-            'rus_platform_joint_offset_x', 'rus_platform_point_x', 'rus_platform_point_y',
-            'rus_platform_point_z', 'size', 'size_t_6'),
+('J_1_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_3_zz', 'Kd_1_t_2', 'Kd_1_t_3', 'Sigma_3_xx',
+            'Sigma_3_yy', 'Sigma_3_zz', 'branch_1', 'branch_2', 'd_Gamma_3_t', 'd_Gamma_3_y',
+            'd_c_yy', 'd_phi_3_t', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_x', 'h_1_y', 'h_3_x',
+            'h_3_y', 'h_3_z', 'inv_Kd_1_t_6', 'inv_rus_platform_joint_offset_x', 'inv_uu_3_t',
+            'rho2_1_t', 'rus_base_frame_xx', 'rus_base_frame_xy', 'rus_base_frame_xz',
+            'rus_base_frame_yx', 'rus_base_frame_yy', 'rus_base_frame_yz', 'rus_base_frame_zx',
+            'rus_base_frame_zy', 'rus_base_frame_zz', 'rus_base_point_x', 'rus_base_point_y',
+            'rus_base_point_z', 'rus_joint2_offset_x', 'rus_platform_joint_offset_x',
+            'rus_platform_point_x', 'rus_platform_point_y', 'rus_platform_point_z', 'size',
+            'size_t_6'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -3667,15 +3618,14 @@ arrays=(('M', (6, 6)),),
             _M_rus,
             "rus",
 (),
-('J_1_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Kd_1_t_2', 'Kd_1_t_3',
-            'branch_1', 'branch_2', 'd_mu_3_t', 'd_mu_3_t_2', 'd_mu_3_t_3', 'd_phi_3_t',
-            'd_phi_3_t_2', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_Kd_1_t_6',
-            'inv_rus_platform_joint_offset_x', 'inv_uu_3_t', 'rho2_1_t', 'rus_base_frame_xx',
-            'rus_base_frame_xy', 'rus_base_frame_xz', 'rus_base_frame_yx', 'rus_base_frame_yy',
-            'rus_base_frame_yz', 'rus_base_frame_zx', 'rus_base_frame_zy', 'rus_base_frame_zz',
-            'rus_base_point_x', 'rus_base_point_y', 'rus_base_point_z', 'rus_joint2_offset_x',
-            'rus_platform_joint_offset_x', 'rus_platform_point_x', 'rus_platform_point_y',
-            'rus_platform_point_z', 'size', 'size_t_6'),
+('J_1_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yz', 'J_3_zz', 'Kd_1_t_2', 'Kd_1_t_3', 'branch_1',
+            'branch_2', 'd_Gamma_3_t', 'd_Gamma_3_y', 'd_c_yy', 'd_phi_3_t', 'h_3_x', 'h_3_y',
+            'h_3_z', 'inv_Kd_1_t_6', 'inv_rus_platform_joint_offset_x', 'inv_uu_3_t', 'rho2_1_t',
+            'rus_base_frame_xx', 'rus_base_frame_xy', 'rus_base_frame_xz', 'rus_base_frame_yx',
+            'rus_base_frame_yy', 'rus_base_frame_yz', 'rus_base_frame_zx', 'rus_base_frame_zy',
+            'rus_base_frame_zz', 'rus_base_point_x', 'rus_base_point_y', 'rus_base_point_z',
+            'rus_joint2_offset_x', 'rus_platform_joint_offset_x', 'rus_platform_point_x',
+            'rus_platform_point_y', 'rus_platform_point_z', 'size', 'size_t_6'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

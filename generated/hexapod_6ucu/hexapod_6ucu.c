@@ -453,6 +453,8 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real J_4_yz = upru_link4_inertia_yz -
             upru_link4_centre_of_mass_y*upru_link4_centre_of_mass_z*upru_link4_mass;
         const real J_4_zz = upru_link4_inertia_zz - upru_link4_mass*(J_4_t_3 - J_4_t_4);
+        /* (upru-N13) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xx = J_2_xx + J_4_xx;
         /* (upru-G4) first moment of link 4 about the connection point */
         const real h_4_x = upru_link4_centre_of_mass_x*upru_link4_mass;
         const real h_4_y = upru_link4_centre_of_mass_y*upru_link4_mass;
@@ -480,15 +482,15 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         const real h_2_x = upru_link2_centre_of_mass_x*upru_link2_mass;
         const real h_2_y = upru_link2_centre_of_mass_y*upru_link2_mass;
         const real h_2_z = upru_link2_centre_of_mass_z*upru_link2_mass;
-        /* (upru-N19) half the trace of that inertia tensor */
+        /* (upru-N27) half the trace of that inertia tensor */
         const real trace_J_2 = R(0.5)*J_2_xx + R(0.5)*J_2_yy + R(0.5)*J_2_zz;
-        /* (upru-N20) second moment of mass of the links that turn with link 2 */
+        /* (upru-N28) second moment of mass of the links that turn with link 2 */
         const real Sigma_2_xx = trace_J_2 - J_2_xx;
         const real Sigma_2_yy = trace_J_2 - J_2_zz;
         const real Sigma_2_zz = trace_J_2 - J_2_yy;
-        /* (upru-N9) half the trace of that inertia tensor */
+        /* (upru-N19) half the trace of that inertia tensor */
         const real trace_J_4 = R(0.5)*J_4_xx + R(0.5)*J_4_yy + R(0.5)*J_4_zz;
-        /* (upru-N10) second moment of mass of the links that turn with link 4 */
+        /* (upru-N20) second moment of mass of the links that turn with link 4 */
         const real Sigma_4_xx = trace_J_4 - J_4_yy;
         const real Sigma_4_yy = trace_J_4 - J_4_zz;
         const real Sigma_4_zz = trace_J_4 - J_4_xx;
@@ -499,7 +501,6 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
             upru_base_frame_yy*upru_base_point_y + upru_base_frame_zy*upru_base_point_z;
         const real b_r0_z = upru_base_frame_xz*upru_base_point_x +
             upru_base_frame_yz*upru_base_point_y + upru_base_frame_zz*upru_base_point_z;
-        model->J_2_xx[leg] = J_2_xx;
         model->J_2_xy[leg] = J_2_xy;
         model->J_2_xz[leg] = J_2_xz;
         model->J_2_yy[leg] = J_2_yy;
@@ -511,6 +512,7 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
         model->J_4_yy[leg] = J_4_yy;
         model->J_4_yz[leg] = J_4_yz;
         model->J_4_zz[leg] = J_4_zz;
+        model->Jc_2_xx[leg] = Jc_2_xx;
         model->Sigma_2_xx[leg] = Sigma_2_xx;
         model->Sigma_2_yy[leg] = Sigma_2_yy;
         model->Sigma_2_zz[leg] = Sigma_2_zz;
@@ -606,7 +608,7 @@ int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 6009 mul, 4077 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -798,7 +800,6 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real omega_x = s->omega_x[j];
         const real omega_y = s->omega_y[j];
         const real omega_z = s->omega_z[j];
-        const real J_2_xx = m->J_2_xx[i];
         const real J_2_xy = m->J_2_xy[i];
         const real J_2_xz = m->J_2_xz[i];
         const real J_2_yy = m->J_2_yy[i];
@@ -810,6 +811,7 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real J_4_yy = m->J_4_yy[i];
         const real J_4_yz = m->J_4_yz[i];
         const real J_4_zz = m->J_4_zz[i];
+        const real Jc_2_xx = m->Jc_2_xx[i];
         const real Sigma_2_xx = m->Sigma_2_xx[i];
         const real Sigma_2_yy = m->Sigma_2_yy[i];
         const real Sigma_2_zz = m->Sigma_2_zz[i];
@@ -942,6 +944,18 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
             axis_y_upru_axes4_in_base_x*axis_z_z;
         const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
             axis_y_upru_axes4_in_base_y*axis_z_x;
+        /* (upru-G5) inertia tensor of link 4 about the connection point */
+        const real J_4_t = J_4_yz*s_4;
+        const real _x = J_4_yy*c_4 - J_4_t;
+        const real J_4_t_2 = J_4_yz*c_4;
+        const real _x_2 = J_4_t_2 - J_4_zz*s_4;
+        const real _x_3 = J_4_xy*c_4 - J_4_xz*s_4;
+        const real _y = J_4_xy*s_4 + J_4_xz*c_4;
+        /* (upru-N13) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xy = _x_3 - J_2_xz;
+        const real _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_4 + _x_2*c_4 - J_2_yz);
+        /* (upru-N9) moment about joint 4 that accelerates joint 4, per unit */
+        const real L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
@@ -956,398 +970,214 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         const real w_1_t_3 = inv_v_1_r0_y*s_4;
         const real w_1_t_4 = c_4*inv_v_1_r0_y;
-        const real w_1_r0_x = c_4*w_1_t_3 - s_4*w_1_t_4;
-        const real w_1_r0_y = c_4*w_1_t_4 + s_4*w_1_t_3;
-        const real w_1_t_5 = s_2*w_1_r0_x;
-        const real w_1_t_6 = c_2*w_1_r0_x;
         /* (upru-V9) force part of reciprocal wrench 2 */
         const real w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x;
         const real _r1_x = c_4*inv_root_2 - s_4*w_2_t;
         const real _r1_y = -c_4*w_2_t - inv_root_2*s_4;
-        /* (upru-A21) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = s_2*w_1_t_5;
-        const real d_alpha_1_t_2 = c_2*w_1_t_5;
-        const real d_alpha_1_t_3 = s_2*w_1_t_6;
-        const real d_alpha_1_t_4 = c_2*w_1_t_6;
-        const real d_alpha_1_t_5 = s_2*w_1_r0_y;
-        const real d_alpha_1_t_6 = c_2*w_1_r0_y;
-        const real _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2;
-        const real _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2;
-        const real _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2;
-        const real _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2;
-        /* (upru-V9) force part of reciprocal wrench 2 */
-        const real w_2_r0_x = _r1_x*c_4 - _r1_y*s_4;
-        const real w_2_r0_y = _r1_x*s_4 + _r1_y*c_4;
         /* (upru-V13) force part of reciprocal wrench 4 */
         const real inv_end_p1_r5_x = 1/end_p1_r5_x;
         const real w_4_t = inv_end_p1_r5_x*inv_root_2*n_m1_t;
         const real w_4_t_2 = inv_v_1_r0_y*(inv_end_p1_r5_x*w_1_t_2 + v_1_r0_x*w_4_t);
         const real _r1_x_2 = c_4*w_4_t - s_4*w_4_t_2;
         const real _r1_y_2 = -c_4*w_4_t_2 - s_4*w_4_t;
-        /* (upru-A25) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = _y_2*c_4 + s_4*w_2_r0_x;
-        const real _y_3 = c_4*w_2_r0_x - _y_2*s_4;
-        const real _x_4 = s_4*w_2_r0_y - c_4*d_alpha_1_t_6;
-        const real _y_4 = c_4*w_2_r0_y + d_alpha_1_t_6*s_4;
-        const real d_alpha_2_t = _x_2*c_4;
-        const real d_alpha_2_t_2 = _x_2*s_4;
-        const real _x_5 = _x_3*c_4 + _x_4*s_4;
-        const real _y_5 = _x_4*c_4 - _x_3*s_4;
-        const real _x_6 = _y_3*c_4 + _y_4*s_4;
-        const real _y_6 = _y_4*c_4 - _y_3*s_4;
-        /* (upru-A31) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d_alpha_4_zx = _r1_x_2 + _y*c_4 + d_alpha_1_t_5*s_4;
-        const real d_alpha_4_zy = _r1_y_2 + c_4*d_alpha_1_t_5 - _y*s_4;
-        /* (upru-N13) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d_mu_4_t = J_4_xy*d_alpha_4_zx + J_4_yy*_x_5 + J_4_yz*_x_6;
-        const real d_mu_4_t_2 = J_4_xz*d_alpha_4_zy + J_4_yz*_y_5 + J_4_zz*_y_6;
-        const real d_mu_4_t_3 = J_4_xx*_x + J_4_xy*d_alpha_2_t - J_4_xz*d_alpha_2_t_2;
-        const real d_mu_4_xy = J_4_xy*d_alpha_4_zy + J_4_yy*_y_5 + J_4_yz*_y_6 - h_4_x;
-        const real d_mu_4_xz = h_4_z + J_4_xy*_x + J_4_yy*d_alpha_2_t - J_4_yz*d_alpha_2_t_2;
-        const real d_mu_4_yx = h_4_x + J_4_xz*d_alpha_4_zx + J_4_yz*_x_5 + J_4_zz*_x_6;
-        const real d_mu_4_yz = J_4_xz*_x + J_4_yz*d_alpha_2_t - h_4_y - J_4_zz*d_alpha_2_t_2;
-        const real d_mu_4_zx = J_4_xx*d_alpha_4_zx + J_4_xy*_x_5 + J_4_xz*_x_6 - h_4_z;
-        const real d_mu_4_zy = h_4_y + J_4_xx*d_alpha_4_zy + J_4_xy*_y_5 + J_4_xz*_y_6;
-        const real _x_7 = c_4*d_mu_4_t - d_mu_4_yx*s_4;
-        const real _y_7 = c_4*d_mu_4_yx + d_mu_4_t*s_4;
-        const real _x_8 = c_4*d_mu_4_xy - d_mu_4_t_2*s_4;
-        const real _y_8 = c_4*d_mu_4_t_2 + d_mu_4_xy*s_4;
-        const real _x_9 = c_4*d_mu_4_zx - d_mu_4_zy*s_4;
-        const real _y_9 = c_4*d_mu_4_zy + d_mu_4_zx*s_4;
-        /* (upru-N27) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_zx = J_2_xy*_x + c_4*d_mu_4_yz + d_mu_4_xz*s_4 - J_2_yz*_x_2;
-        const real d_N_2_zy = J_2_xy*_y + J_2_yy*w_2_r0_x + _y_7*c_4 - J_2_yz*_y_2 - _y_8*s_4;
-        const real d_N_2_zz = J_2_xy*d_alpha_1_t_5 + J_2_yy*w_2_r0_y + J_2_yz*d_alpha_1_t_6 +
-            _y_7*s_4 + _y_8*c_4;
-        /* (upru-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (upru-G4) first moment of link 4 about the connection point */
+        const real h_4_r1_x = c_4*h_4_y - h_4_z*s_4;
+        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_x = s_2*(d_mu_4_t_3 + J_2_xx*_x - J_2_xz*_x_2) - c_2*(J_2_zz*_x_2 +
-            c_4*d_mu_4_xz - J_2_xz*_x - d_mu_4_yz*s_4);
-        const real d_Gamma_1_y = s_2*(_x_9 + J_2_xx*_y + J_2_xy*w_2_r0_x - J_2_xz*_y_2) -
-            c_2*(J_2_zz*_y_2 + _x_7*c_4 - J_2_xz*_y - J_2_yz*w_2_r0_x - _x_8*s_4);
-        const real d_Gamma_1_z = s_2*(_y_9 + J_2_xx*d_alpha_1_t_5 + J_2_xy*w_2_r0_y +
-            J_2_xz*d_alpha_1_t_6) - c_2*(_x_7*s_4 + _x_8*c_4 - J_2_xz*d_alpha_1_t_5 -
-            J_2_yz*w_2_r0_y - J_2_zz*d_alpha_1_t_6);
-        const real d_Gamma_1_r1_y = c_4*d_Gamma_1_z - d_Gamma_1_y*s_4;
-        /* (upru-N31) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        const real d_Gamma_1_t = L_c4_r2_y*inv_end_p1_r5_x;
+        const real d_Gamma_1_t_2 = inv_root_2*(_y_2 + d_Gamma_1_t*n_m1_t);
+        const real d_Gamma_1_t_3 = c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_4 - _x_2*s_4)) +
+            d_Gamma_1_t*w_1_t_2 + d_Gamma_1_t_2*v_1_r0_x - s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2);
+        const real d_Gamma_1_t_4 = c_2*d_Gamma_1_t_2;
+        const real d_Gamma_1_x = c_2*h_4_x + h_4_r1_x*s_2 - d_Gamma_1_t_3*inv_v_1_r0_y;
+        const real d_Gamma_1_y = c_4*h_4_z + h_4_y*s_4 - d_Gamma_1_t_2*s_2;
+        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_r1_y = c_4*d_N_2_zz - d_N_2_zy*s_4;
-        /* (upru-N47) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_t = _y*inv_end_p1_r5_x;
+        const real d_Gamma_2_t_2 = inv_root_2*(J_2_yy + c_4*(J_4_t + J_4_zz*c_4) +
+            d_Gamma_2_t*n_m1_t + s_4*(J_4_t_2 + J_4_yy*s_4));
+        const real d_Gamma_2_t_3 = inv_v_1_r0_y*(d_Gamma_2_t*w_1_t_2 + d_Gamma_2_t_2*v_1_r0_x -
+            _y_2);
+        const real d_Gamma_2_y = d_Gamma_2_t_2 + h_4_x;
+        /* (upru-N25) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
+           and weight */
+        const real d_Gamma_4_t = J_4_xx*inv_end_p1_r5_x;
+        const real d_Gamma_4_t_2 = inv_root_2*(_y + d_Gamma_4_t*n_m1_t);
+        const real d_Gamma_4_t_3 = inv_v_1_r0_y*(d_Gamma_4_t*w_1_t_2 + d_Gamma_4_t_2*v_1_r0_x -
+            L_c4_r2_y);
+        const real d_Gamma_4_x = c_4*d_Gamma_4_t_2 - h_4_z - d_Gamma_4_t_3*s_4;
+        const real d_Gamma_4_y = h_4_y - c_4*d_Gamma_4_t_3 - d_Gamma_4_t_2*s_4;
+        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_r1_x = -c_2*d_Gamma_1_y - d_Gamma_1_t_4*s_2;
+        const real d_Gamma_1_r1_y = c_2*d_Gamma_1_t_4 - d_Gamma_1_y*s_2;
+        const real d_Gamma_1_r3_y = c_4*d_Gamma_1_x - d_Gamma_1_r1_y*s_4;
+        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_r1_y = -c_4*d_Gamma_2_t_3 - d_Gamma_2_y*s_4;
+        /* (upru-N43) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_xz = d_Gamma_1_r1_x*w_1_t_3 - _r1_x*h_4_r1_x;
+        const real d_G_yz = d_Gamma_1_r1_x*w_1_t_4 - _r1_y*h_4_r1_x;
+        /* (upru-A28) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real d_alpha_4_zy = _r1_y_2 + s_2*w_1_t_4;
+        /* (upru-N55) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_4_zx*h_4_z - _r1_x*(c_4*d_N_2_zy + d_N_2_zz*s_4) -
-            _r1_x_2*d_mu_4_zx - _x_6*h_4_x - w_1_t_3*(c_4*d_Gamma_1_y + d_Gamma_1_z*s_4);
-        const real d_c_xy = d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_mu_4_zy -
-            _y_6*h_4_x - d_Gamma_1_r1_y*w_1_t_3;
-        const real d_c_xz = _x*h_4_z + d_alpha_2_t_2*h_4_x - _r1_x*d_N_2_zx - _r1_x_2*d_mu_4_t_3 -
-            d_Gamma_1_x*w_1_t_3;
-        const real d_c_yz = d_alpha_2_t*h_4_x - _r1_y*d_N_2_zx - _r1_y_2*d_mu_4_t_3 - _x*h_4_y -
-            d_Gamma_1_x*w_1_t_4;
-        /* (upru-N49) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + _r1_y_2*d_mu_4_zy +
-            d_Gamma_1_r1_y*w_1_t_4 + d_alpha_4_zy*h_4_y - _y_5*h_4_x;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_alpha_2_t*h_4_z + d_alpha_2_t_2*h_4_y;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = axis_x_upru_axes4_x*d_c_xy + axis_z_x*d_c_yz -
-            Q_t_2*axis_y_upru_axes4_in_base_x;
-        const real Q_t_6 = axis_x_upru_axes4_y*d_c_xy + axis_z_y*d_c_yz -
-            Q_t_2*axis_y_upru_axes4_in_base_y;
-        const real Q_t_7 = axis_x_upru_axes4_z*d_c_xy + axis_z_z*d_c_yz -
-            Q_t_2*axis_y_upru_axes4_in_base_z;
-        const real Q_t_8 = Q_t_4*axis_z_x - axis_x_upru_axes4_x*d_c_xz;
-        const real Q_t_9 = Q_t_4*axis_z_y - axis_x_upru_axes4_y*d_c_xz;
-        const real Q_t_10 = Q_t_4*axis_z_z - axis_x_upru_axes4_z*d_c_xz;
-        const real Q_t_11 = Q_t_5*axis_y_upru_axes4_in_base_x - Q_t_8*axis_z_x;
-        const real Q_t_12 = 2*Q_t_11 + d_c_xx;
-        const real Q_t_13 = Q_t_5*axis_y_upru_axes4_in_base_y + Q_t_6*axis_y_upru_axes4_in_base_x
-            - Q_t_8*axis_z_y - Q_t_9*axis_z_x;
-        const real Q_t_14 = Q_t_5*axis_y_upru_axes4_in_base_z + Q_t_7*axis_y_upru_axes4_in_base_x
-            - Q_t_10*axis_z_x - Q_t_8*axis_z_z;
-        const real Q_t_15 = Q_t_6*axis_y_upru_axes4_in_base_y - Q_t_9*axis_z_y;
-        const real Q_t_16 = 2*Q_t_15 + d_c_xx;
-        const real Q_t_17 = Q_t_6*axis_y_upru_axes4_in_base_z + Q_t_7*axis_y_upru_axes4_in_base_y
-            - Q_t_10*axis_z_y - Q_t_9*axis_z_z;
-        const real Q_t_18 = Q_t_7*axis_y_upru_axes4_in_base_z - Q_t_10*axis_z_z;
-        const real Q_t_19 = 2*Q_t_18 + d_c_xx;
+        const real d_c_xx = h_4_z*(_r1_x_2 + s_2*w_1_t_3) - _r1_x*(c_4*d_Gamma_2_y -
+            d_Gamma_2_t_3*s_4) - _r1_x_2*d_Gamma_4_x - h_4_x*(_r1_x*c_4 + v_1_t_2*w_1_t_3) -
+            w_1_t_3*(c_4*d_Gamma_1_r1_y + d_Gamma_1_x*s_4);
+        const real d_c_xy = d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_Gamma_4_y -
+            d_Gamma_1_r3_y*w_1_t_3 - h_4_x*(_r1_y*c_4 + v_1_t_2*w_1_t_4);
+        const real d_c_yy = h_4_x*(_r1_y*s_4 - v_1_t*w_1_t_4) - _r1_y*d_Gamma_2_r1_y -
+            _r1_y_2*d_Gamma_4_y - d_Gamma_1_r3_y*w_1_t_4 - d_alpha_4_zy*h_4_y;
+        /* (upru-N57) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = R(0.5)*d_c_xx;
+        const real Q_t_2 = R(0.5)*d_c_yy;
+        const real Q_t_3 = Q_t*axis_x_upru_axes4_x + axis_y_upru_axes4_in_base_x*d_c_xy -
+            axis_z_x*d_G_xz;
+        const real Q_t_4 = Q_t*axis_x_upru_axes4_y + axis_y_upru_axes4_in_base_y*d_c_xy -
+            axis_z_y*d_G_xz;
+        const real Q_t_5 = Q_t*axis_x_upru_axes4_z + axis_y_upru_axes4_in_base_z*d_c_xy -
+            axis_z_z*d_G_xz;
+        const real Q_t_6 = Q_t_2*axis_y_upru_axes4_in_base_x - axis_z_x*d_G_yz;
+        const real Q_t_7 = Q_t_2*axis_y_upru_axes4_in_base_y - axis_z_y*d_G_yz;
+        const real Q_t_8 = Q_t_2*axis_y_upru_axes4_in_base_z - axis_z_z*d_G_yz;
+        const real Q_t_9 = Q_t_3*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_x;
+        const real Q_t_10 = 2*Q_t_9;
+        const real Q_t_11 = Q_t_3*axis_x_upru_axes4_y + Q_t_4*axis_x_upru_axes4_x +
+            Q_t_6*axis_y_upru_axes4_in_base_y + Q_t_7*axis_y_upru_axes4_in_base_x;
+        const real Q_t_12 = Q_t_3*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_x +
+            Q_t_6*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_x;
+        const real Q_t_13 = Q_t_4*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_y;
+        const real Q_t_14 = 2*Q_t_13;
+        const real Q_t_15 = Q_t_4*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_y +
+            Q_t_7*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_y;
+        const real Q_t_16 = Q_t_5*axis_x_upru_axes4_z + Q_t_8*axis_y_upru_axes4_in_base_z;
+        const real Q_t_17 = 2*Q_t_16;
         /* (upru-V18) moment part of reciprocal wrench 4 */
         const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
-        /* (upru-N12) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d0_mu_4_t = J_4_xy*o_4_x;
-        const real d0_mu_4_t_2 = J_4_xz*o_4_x;
-        const real d0_mu_4_t_3 = J_4_xx*o_4_x;
-        const real _x_10 = d0_mu_4_t_2*s_4 - c_4*d0_mu_4_t;
-        const real _y_10 = -c_4*d0_mu_4_t_2 - d0_mu_4_t*s_4;
-        const real _y_11 = J_4_xy*s_4 + J_4_xz*c_4;
-        const real d0_mu_4_t_4 = _y_10*c_4;
-        const real d0_mu_4_t_5 = _y_10*s_4;
-        const real d0_mu_4_t_6 = c_4*d0_mu_4_t_3;
-        const real d0_mu_4_t_7 = d0_mu_4_t_3*s_4;
-        /* (upru-N34) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (upru-N38) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d0_Gamma_1_t = J_4_xx*s_2;
-        const real d0_Gamma_1_x = d0_Gamma_1_t - c_2*(J_4_xy*c_4 - J_4_xz*s_4);
-        const real d0_Gamma_1_t_2 = d0_mu_4_t_6*s_2;
-        const real d0_Gamma_1_y = -d0_Gamma_1_t_2 - _x_10*c_2*c_4;
-        const real d0_Gamma_1_t_3 = d0_mu_4_t_7*s_2;
-        const real d0_Gamma_1_z = -d0_Gamma_1_t_3 - _x_10*c_2*s_4;
-        const real d0_Gamma_1_r1_x = c_4*d0_Gamma_1_y + d0_Gamma_1_z*s_4;
-        const real d0_Gamma_1_r1_y = c_4*d0_Gamma_1_z - d0_Gamma_1_y*s_4;
-        /* (upru-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        const real d0_Gamma_1_t = L_c4_r2_y*o_4_x;
+        /* (upru-N34) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d0_Gamma_2_r1_x = c_4*d0_mu_4_t_4 + d0_mu_4_t_5*s_4;
-        const real d0_Gamma_2_r1_y = c_4*d0_mu_4_t_5 - d0_mu_4_t_4*s_4;
-        /* (upru-N38) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_xy = _r1_x*d0_Gamma_2_r1_y + d0_Gamma_1_r1_y*w_1_t_3;
-        const real d0_G_yy = _r1_y*d0_Gamma_2_r1_y + d0_Gamma_1_r1_y*w_1_t_4;
-        /* (upru-N46) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d0_Gamma_2_t = _y*o_4_x;
+        /* (upru-N24) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_4_t = J_4_xx*o_4_x;
+        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d0_c_xx = _r1_x_2*d0_mu_4_t_3 - _r1_x*d0_Gamma_2_r1_x - d0_Gamma_1_r1_x*w_1_t_3
-            - h_4_z*o_4_x;
-        const real d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - _r1_x*_y_11 - d0_Gamma_1_x*w_1_t_3;
-        const real d0_c_yx = _r1_y_2*d0_mu_4_t_3 + h_4_y*o_4_x - _r1_y*d0_Gamma_2_r1_x -
-            d0_Gamma_1_r1_x*w_1_t_4;
-        const real d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - _r1_y*_y_11 - d0_Gamma_1_x*w_1_t_4;
+        const real d0_c_xx = _r1_x*d0_Gamma_2_t + _r1_x_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_3 -
+            h_4_z*o_4_x;
+        const real d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - L_c4_r2_y*w_1_t_3 - _r1_x*_y;
+        const real d0_c_yx = _r1_y*d0_Gamma_2_t + _r1_y_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_4 +
+            h_4_y*o_4_x;
+        const real d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - L_c4_r2_y*w_1_t_4 - _r1_y*_y;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_6 = Q_t_17*q_in_base_x;
+        const real M_ta_t = Q_t_11*q_in_base_z;
+        const real M_ta_t_2 = Q_t_12*q_in_base_y;
+        const real M_ta_t_3 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
+        const real M_ta_t_4 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
+        const real M_ta_t_5 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
+        const real M_ta_t_6 = Q_t_15*q_in_base_x;
         const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
+        const real M_ta_t_8 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
+        const real M_ta_t_9 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
+        const real M_ta_t_10 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
         const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upru-N46) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real _x_11 = c_4*d0_c_xx - d0_c_yx*s_4;
-        const real _y_12 = c_4*d0_c_yx + d0_c_xx*s_4;
-        const real _x_12 = d0_G_yy*s_4 - c_4*d0_G_xy;
-        const real _y_13 = -c_4*d0_G_yy - d0_G_xy*s_4;
-        const real _x_13 = c_4*d0_c_xz - d0_c_yz*s_4;
-        const real _y_14 = c_4*d0_c_yz + d0_c_xz*s_4;
-        const real _x_14 = _x_11*c_4 - _x_12*s_4;
-        const real _y_15 = _x_11*s_4 + _x_12*c_4;
-        const real _x_15 = _y_12*c_4 - _y_13*s_4;
-        const real _y_16 = _y_12*s_4 + _y_13*c_4;
-        const real d0_c_t = _x_13*s_2;
-        const real d0_c_t_2 = _x_13*c_2;
-        const real d0_c_t_3 = _x_14*s_2;
-        const real d0_c_t_4 = _x_14*c_2;
-        const real d0_c_t_5 = _y_15*s_2;
-        const real d0_c_t_6 = _y_15*c_2;
-        const real _x_16 = c_2*d0_c_t + d0_c_t_3*s_2;
-        const real _y_17 = c_2*d0_c_t_3 - d0_c_t*s_2;
-        const real _x_17 = c_2*d0_c_t_2 + d0_c_t_4*s_2;
-        const real _y_18 = c_2*d0_c_t_4 - d0_c_t_2*s_2;
-        const real _x_18 = -_x_15*s_2 - _y_14*c_2;
-        const real _y_19 = _y_14*s_2 - _x_15*c_2;
-        const real _x_19 = d0_c_t_5*s_1 - _y_16*c_1;
-        const real _y_20 = _y_16*s_1 + c_1*d0_c_t_5;
-        const real _x_20 = -_x_16*s_1 - _x_18*c_1;
-        const real _y_21 = _x_18*s_1 - _x_16*c_1;
-        const real _x_21 = -_y_17*s_1 - _y_19*c_1;
-        const real _y_22 = _y_19*s_1 - _y_17*c_1;
-        const real _x_22 = -_x_19*c_1 - _x_20*s_1;
-        const real _y_23 = _x_19*s_1 - _x_20*c_1;
-        const real _x_23 = -_y_20*c_1 - _y_21*s_1;
-        const real _y_24 = _y_20*s_1 - _y_21*c_1;
-        const real _x_24 = c_1*d0_c_t_6 - _x_17*s_1;
-        const real _y_25 = -_x_17*c_1 - d0_c_t_6*s_1;
-        const real _x_25 = _x_22*upru_base_frame_xx + _x_23*upru_base_frame_xy +
-            _x_24*upru_base_frame_xz;
-        const real _y_26 = _x_22*upru_base_frame_yx + _x_23*upru_base_frame_yy +
-            _x_24*upru_base_frame_yz;
-        const real _z = _x_22*upru_base_frame_zx + _x_23*upru_base_frame_zy +
-            _x_24*upru_base_frame_zz;
-        const real _x_26 = _y_23*upru_base_frame_xx + _y_24*upru_base_frame_xy +
-            _y_25*upru_base_frame_xz;
-        const real _y_27 = _y_23*upru_base_frame_yx + _y_24*upru_base_frame_yy +
-            _y_25*upru_base_frame_yz;
-        const real _z_2 = _y_23*upru_base_frame_zx + _y_24*upru_base_frame_zy +
-            _y_25*upru_base_frame_zz;
-        const real _x_27 = _x_21*upru_base_frame_xx + _y_18*upru_base_frame_xz +
-            _y_22*upru_base_frame_xy;
-        const real _y_28 = _x_21*upru_base_frame_yx + _y_18*upru_base_frame_yz +
-            _y_22*upru_base_frame_yy;
-        const real _z_3 = _x_21*upru_base_frame_zx + _y_18*upru_base_frame_zz +
-            _y_22*upru_base_frame_zy;
-        const real _y_29 = _x_25*upru_base_frame_yx + _x_26*upru_base_frame_yy +
-            _x_27*upru_base_frame_yz;
-        const real _z_4 = _x_25*upru_base_frame_zx + _x_26*upru_base_frame_zy +
-            _x_27*upru_base_frame_zz;
-        const real _x_28 = _y_26*upru_base_frame_xx + _y_27*upru_base_frame_xy +
-            _y_28*upru_base_frame_xz;
-        const real _y_30 = _y_26*upru_base_frame_yx + _y_27*upru_base_frame_yy +
-            _y_28*upru_base_frame_yz;
-        const real _z_5 = _y_26*upru_base_frame_zx + _y_27*upru_base_frame_zy +
-            _y_28*upru_base_frame_zz;
-        const real _x_29 = _z*upru_base_frame_xx + _z_2*upru_base_frame_xy +
-            _z_3*upru_base_frame_xz;
-        const real _y_31 = _z*upru_base_frame_yx + _z_2*upru_base_frame_yy +
-            _z_3*upru_base_frame_yz;
-        const real _z_6 = _z*upru_base_frame_zx + _z_2*upru_base_frame_zy +
-            _z_3*upru_base_frame_zz;
+        const real d0_c_in_base_x = axis_x_upru_axes4_x*d0_c_xx +
+            axis_y_upru_axes4_in_base_x*d0_c_yx;
+        const real d0_c_in_base_y = axis_x_upru_axes4_y*d0_c_xx +
+            axis_y_upru_axes4_in_base_y*d0_c_yx;
+        const real d0_c_in_base_z = axis_x_upru_axes4_z*d0_c_xx +
+            axis_y_upru_axes4_in_base_z*d0_c_yx;
+        const real d0_c_in_base_x_2 = axis_x_upru_axes4_x*d0_c_xz +
+            axis_y_upru_axes4_in_base_x*d0_c_yz;
+        const real d0_c_in_base_y_2 = axis_x_upru_axes4_y*d0_c_xz +
+            axis_y_upru_axes4_in_base_y*d0_c_yz;
+        const real d0_c_in_base_z_2 = axis_x_upru_axes4_z*d0_c_xz +
+            axis_y_upru_axes4_in_base_z*d0_c_yz;
+        const real d0_c_in_base_y_3 = axis_x_upru_axes4_y*d0_c_in_base_x +
+            axis_z_y*d0_c_in_base_x_2;
+        const real d0_c_in_base_z_3 = axis_x_upru_axes4_z*d0_c_in_base_x +
+            axis_z_z*d0_c_in_base_x_2;
+        const real d0_c_in_base_x_3 = axis_x_upru_axes4_x*d0_c_in_base_y +
+            axis_z_x*d0_c_in_base_y_2;
+        const real d0_c_in_base_y_4 = axis_x_upru_axes4_y*d0_c_in_base_y +
+            axis_z_y*d0_c_in_base_y_2;
+        const real d0_c_in_base_z_4 = axis_x_upru_axes4_z*d0_c_in_base_y +
+            axis_z_z*d0_c_in_base_y_2;
+        const real d0_c_in_base_x_4 = axis_x_upru_axes4_x*d0_c_in_base_z +
+            axis_z_x*d0_c_in_base_z_2;
+        const real d0_c_in_base_y_5 = axis_x_upru_axes4_y*d0_c_in_base_z +
+            axis_z_y*d0_c_in_base_z_2;
+        const real d0_c_in_base_z_5 = axis_x_upru_axes4_z*d0_c_in_base_z +
+            axis_z_z*d0_c_in_base_z_2;
         /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t - M_ta_t_2 - _x_25*upru_base_frame_xx -
-            _x_26*upru_base_frame_xy - _x_27*upru_base_frame_xz;
-        const real M_ta_t_13 = M_ta_t_3 + _y_29;
-        const real M_ta_t_14 = M_ta_t_4 - _z_4;
-        const real M_ta_t_15 = M_ta_t_5 - _x_28;
-        const real M_ta_t_16 = M_ta_t_7 + _y_30;
-        const real M_ta_t_17 = M_ta_t_8 - _z_5;
-        const real M_ta_t_18 = M_ta_t_9 - _x_29;
-        const real M_ta_t_19 = M_ta_t_10 + _y_31;
-        const real M_ta_t_20 = M_ta_t_11 + _z_6;
-        /* (upru-N42) coefficient of the acceleration in: moment at the connection point that balances the
+        const real M_ta_t_12 = M_ta_t - M_ta_t_2 - axis_x_upru_axes4_x*d0_c_in_base_x -
+            axis_z_x*d0_c_in_base_x_2;
+        const real M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_3;
+        const real M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_3;
+        const real M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_3;
+        const real M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_4;
+        const real M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_4;
+        const real M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_4;
+        const real M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_5;
+        const real M_ta_t_20 = M_ta_t_11 + d0_c_in_base_z_5;
+        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d0_G_m1_t = d0_Gamma_4_t*inv_end_p1_r5_x;
+        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d_G_m1_t = d_Gamma_4_x*inv_end_p1_r5_x;
+        const real d_G_m1_t_2 = d_Gamma_4_y*inv_end_p1_r5_x;
+        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x;
+        const real n_m1_in_base_y = axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x;
+        const real n_m1_in_base_z = axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x;
+        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d_G_m1_in_base_x = -axis_x_upru_axes4_x*d_G_m1_t -
+            axis_y_upru_axes4_in_base_x*d_G_m1_t_2;
+        const real d_G_m1_in_base_y = -axis_x_upru_axes4_y*d_G_m1_t -
+            axis_y_upru_axes4_in_base_y*d_G_m1_t_2;
+        const real d_G_m1_in_base_z = -axis_x_upru_axes4_z*d_G_m1_t -
+            axis_y_upru_axes4_in_base_z*d_G_m1_t_2;
+        /* (upru-N51) coefficient of the acceleration in: moment at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d0_G_m_t = d0_mu_4_t_3*o_4_x;
-        /* (upru-N43) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_t = d_mu_4_zx*o_4_x;
-        const real d_G_m_t_2 = d_mu_4_zy*o_4_x;
-        const real d_G_m_t_3 = d_mu_4_t_3*o_4_x;
-        /* (upru-N52) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real d_c_m_t = c_4*d_G_m_t;
-        const real d_c_m_t_2 = d_G_m_t*s_4;
-        const real d_c_m_t_3 = c_4*d_G_m_t_2;
-        const real d_c_m_t_4 = d_G_m_t_2*s_4;
-        const real d_c_m_t_5 = c_4*d_G_m_t_3;
-        const real d_c_m_t_6 = d_G_m_t_3*s_4;
-        const real _x_30 = c_4*d_c_m_t - d_c_m_t_3*s_4;
-        const real _y_32 = c_4*d_c_m_t_3 + d_c_m_t*s_4;
-        const real _x_31 = c_4*d_c_m_t_2 - d_c_m_t_4*s_4;
-        const real _y_33 = c_4*d_c_m_t_4 + d_c_m_t_2*s_4;
-        const real _x_32 = c_2*d_mu_4_t_3 - d_c_m_t_5*s_2;
-        const real _y_34 = -c_2*d_c_m_t_5 - d_mu_4_t_3*s_2;
-        const real _x_33 = _x_9*c_2 - _x_30*s_2;
-        const real _y_35 = -_x_30*c_2 - _x_9*s_2;
-        const real _x_34 = _y_9*c_2 - _y_32*s_2;
-        const real _y_36 = -_y_32*c_2 - _y_9*s_2;
-        const real _x_35 = -_x_32*c_2 - _x_33*s_2;
-        const real _y_37 = _x_32*s_2 - _x_33*c_2;
-        const real _x_36 = -_y_34*c_2 - _y_35*s_2;
-        const real _y_38 = _y_34*s_2 - _y_35*c_2;
-        const real _x_37 = -_x_31*s_2 - c_2*d_c_m_t_6;
-        const real _y_39 = d_c_m_t_6*s_2 - _x_31*c_2;
-        const real _x_38 = -_x_34*s_1 - _y_33*c_1;
-        const real _y_40 = _y_33*s_1 - _x_34*c_1;
-        const real _x_39 = -_x_35*s_1 - _x_37*c_1;
-        const real _y_41 = _x_37*s_1 - _x_35*c_1;
-        const real _x_40 = -_y_37*s_1 - _y_39*c_1;
-        const real _y_42 = _y_39*s_1 - _y_37*c_1;
-        const real _x_41 = -_x_38*c_1 - _x_39*s_1;
-        const real _y_43 = _x_38*s_1 - _x_39*c_1;
-        const real _x_42 = -_y_40*c_1 - _y_41*s_1;
-        const real _y_44 = _y_40*s_1 - _y_41*c_1;
-        const real _x_43 = -_x_36*s_1 - _y_36*c_1;
-        const real _y_45 = _y_36*s_1 - _x_36*c_1;
-        const real _x_44 = _x_41*upru_base_frame_xx + _x_42*upru_base_frame_xy +
-            _x_43*upru_base_frame_xz;
-        const real _y_46 = _x_41*upru_base_frame_yx + _x_42*upru_base_frame_yy +
-            _x_43*upru_base_frame_yz;
-        const real _z_7 = _x_41*upru_base_frame_zx + _x_42*upru_base_frame_zy +
-            _x_43*upru_base_frame_zz;
-        const real _x_45 = _y_43*upru_base_frame_xx + _y_44*upru_base_frame_xy +
-            _y_45*upru_base_frame_xz;
-        const real _y_47 = _y_43*upru_base_frame_yx + _y_44*upru_base_frame_yy +
-            _y_45*upru_base_frame_yz;
-        const real _z_8 = _y_43*upru_base_frame_zx + _y_44*upru_base_frame_zy +
-            _y_45*upru_base_frame_zz;
-        const real _x_46 = _x_40*upru_base_frame_xx + _y_38*upru_base_frame_xz +
-            _y_42*upru_base_frame_xy;
-        const real _y_48 = _x_40*upru_base_frame_yx + _y_38*upru_base_frame_yz +
-            _y_42*upru_base_frame_yy;
-        const real _z_9 = _x_40*upru_base_frame_zx + _y_38*upru_base_frame_zz +
-            _y_42*upru_base_frame_zy;
-        const real _x_47 = _x_44*upru_base_frame_xx + _x_45*upru_base_frame_xy +
-            _x_46*upru_base_frame_xz;
-        const real _y_49 = _x_44*upru_base_frame_yx + _x_45*upru_base_frame_yy +
-            _x_46*upru_base_frame_yz;
-        const real _z_10 = _x_44*upru_base_frame_zx + _x_45*upru_base_frame_zy +
-            _x_46*upru_base_frame_zz;
-        const real _x_48 = _y_46*upru_base_frame_xx + _y_47*upru_base_frame_xy +
-            _y_48*upru_base_frame_xz;
-        /* (upru-N51) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real d0_c_m_t = c_4*d0_G_m_t;
-        const real d0_c_m_t_2 = d0_G_m_t*s_4;
-        const real d0_c_m_t_3 = c_4*d0_c_m_t;
-        const real d0_c_m_t_4 = d0_c_m_t*s_4;
-        const real d0_c_m_t_5 = c_4*d0_c_m_t_2;
-        const real d0_c_m_t_6 = d0_c_m_t_2*s_4;
-        const real _x_49 = J_4_xx*c_2 - d0_Gamma_1_t_2;
-        const real d0_c_m_t_7 = c_2*d0_mu_4_t_6;
-        const real _y_50 = -d0_Gamma_1_t - d0_c_m_t_7;
-        const real _x_50 = d0_c_m_t_3*s_2 - d0_c_m_t_7;
-        const real _y_51 = d0_Gamma_1_t_2 + c_2*d0_c_m_t_3;
-        const real d0_c_m_t_8 = c_2*d0_mu_4_t_7;
-        const real _x_51 = d0_c_m_t_4*s_2 - d0_c_m_t_8;
-        const real _y_52 = d0_Gamma_1_t_3 + c_2*d0_c_m_t_4;
-        const real _x_52 = -_x_49*c_2 - _x_50*s_2;
-        const real _y_53 = _x_49*s_2 - _x_50*c_2;
-        const real _x_53 = -_y_50*c_2 - _y_51*s_2;
-        const real _y_54 = _y_50*s_2 - _y_51*c_2;
-        const real _x_54 = d0_c_m_t_5*s_2 - d0_c_m_t_8;
-        const real _y_55 = d0_Gamma_1_t_3 + c_2*d0_c_m_t_5;
-        const real _x_55 = c_1*d0_c_m_t_6 - _x_51*s_1;
-        const real _y_56 = -_x_51*c_1 - d0_c_m_t_6*s_1;
-        const real _x_56 = -_x_52*s_1 - _x_54*c_1;
-        const real _y_57 = _x_54*s_1 - _x_52*c_1;
-        const real _x_57 = -_y_53*s_1 - _y_55*c_1;
-        const real _y_58 = _y_55*s_1 - _y_53*c_1;
-        const real _x_58 = -_x_55*c_1 - _x_56*s_1;
-        const real _y_59 = _x_55*s_1 - _x_56*c_1;
-        const real _x_59 = -_y_56*c_1 - _y_57*s_1;
-        const real _y_60 = _y_56*s_1 - _y_57*c_1;
-        const real _x_60 = -_x_53*s_1 - _y_52*c_1;
-        const real _y_61 = _y_52*s_1 - _x_53*c_1;
-        const real _x_61 = _x_58*upru_base_frame_xx + _x_59*upru_base_frame_xy +
-            _x_60*upru_base_frame_xz;
-        const real _y_62 = _x_58*upru_base_frame_yx + _x_59*upru_base_frame_yy +
-            _x_60*upru_base_frame_yz;
-        const real _x_62 = _y_59*upru_base_frame_xx + _y_60*upru_base_frame_xy +
-            _y_61*upru_base_frame_xz;
-        const real _y_63 = _y_59*upru_base_frame_yx + _y_60*upru_base_frame_yy +
-            _y_61*upru_base_frame_yz;
-        const real _x_63 = _x_57*upru_base_frame_xx + _y_54*upru_base_frame_xz +
-            _y_58*upru_base_frame_xy;
-        const real _y_64 = _x_57*upru_base_frame_yx + _y_54*upru_base_frame_yz +
-            _y_58*upru_base_frame_yy;
-        const real _z_11 = upru_base_frame_zx*(_x_58*upru_base_frame_zx + _x_59*upru_base_frame_zy
-            + _x_60*upru_base_frame_zz) + upru_base_frame_zy*(_y_59*upru_base_frame_zx +
-            _y_60*upru_base_frame_zy + _y_61*upru_base_frame_zz) +
-            upru_base_frame_zz*(_x_57*upru_base_frame_zx + _y_54*upru_base_frame_zz +
-            _y_58*upru_base_frame_zy);
+        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
+        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
+        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
+        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
+        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d0_G_m1_in_base_y = axis_x_upru_axes4_y*d0_G_m1_t - axis_z_y*d_Gamma_4_t;
+        const real d0_G_m1_in_base_z = axis_x_upru_axes4_z*d0_G_m1_t - axis_z_z*d_Gamma_4_t;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + _x_29*q_in_base_y + _x_61*upru_base_frame_xx +
-            _x_62*upru_base_frame_xy + _x_63*upru_base_frame_xz + _z_10*q_in_base_y -
-            M_ta_t_9*q_in_base_y - _x_28*q_in_base_z - _y_49*q_in_base_z;
-        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + _y_30*q_in_base_z + _z_10*q_in_base_x -
-            M_ta_t_10*q_in_base_y - _x_47*q_in_base_z - _x_61*upru_base_frame_yx -
-            _x_62*upru_base_frame_yy - _x_63*upru_base_frame_yz - _y_31*q_in_base_y;
-        const real M_aa_t_3 = _x_47*q_in_base_y + _z_5*q_in_base_z - M_ta_t_11*q_in_base_y -
-            M_ta_t_8*q_in_base_z - _x_61*upru_base_frame_zx - _x_62*upru_base_frame_zy -
-            _x_63*upru_base_frame_zz - _y_49*q_in_base_x - _z_6*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + _x_48*q_in_base_z + _y_29*q_in_base_z +
-            _y_62*upru_base_frame_yx + _y_63*upru_base_frame_yy + _y_64*upru_base_frame_yz -
-            M_ta_t_10*q_in_base_x - _y_31*q_in_base_x - q_in_base_x*(_y_46*upru_base_frame_zx +
-            _y_47*upru_base_frame_zy + _y_48*upru_base_frame_zz);
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + _x_48*q_in_base_y +
-            _z_6*q_in_base_x - _y_62*upru_base_frame_zx - _y_63*upru_base_frame_zy -
-            _y_64*upru_base_frame_zz - _z_4*q_in_base_z - q_in_base_x*(_y_46*upru_base_frame_yx +
-            _y_47*upru_base_frame_yy + _y_48*upru_base_frame_yz);
-        const real M_aa_t_6 = _z_11 + M_ta_t_4*q_in_base_y + _z_5*q_in_base_x +
-            q_in_base_x*(_z_7*upru_base_frame_yx + _z_8*upru_base_frame_yy +
-            _z_9*upru_base_frame_yz) - M_ta_t_8*q_in_base_x - _z_4*q_in_base_y -
-            q_in_base_y*(_z_7*upru_base_frame_xx + _z_8*upru_base_frame_xy +
-            _z_9*upru_base_frame_xz);
+        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_4*q_in_base_y +
+            d_G_m_xy*q_in_base_z - M_ta_t_9*q_in_base_y - d0_c_in_base_x_3*q_in_base_z -
+            d_G_m_xz*q_in_base_y - n_m1_in_base_x*(axis_x_upru_axes4_x*d0_G_m1_t -
+            axis_z_x*d_Gamma_4_t);
+        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x +
+            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
+            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
+        const real M_aa_t_3 = d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z +
+            d_G_m_xy*q_in_base_x - M_ta_t_11*q_in_base_y - M_ta_t_8*q_in_base_z -
+            d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
+        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_c_in_base_y_3*q_in_base_z +
+            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x - M_ta_t_10*q_in_base_x -
+            d0_G_m1_in_base_y*n_m1_in_base_y - d0_c_in_base_y_5*q_in_base_x -
+            d_G_m_yx*q_in_base_z;
+        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
+            d0_G_m1_in_base_z*n_m1_in_base_y + d0_c_in_base_z_5*q_in_base_x +
+            d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x - d0_c_in_base_z_3*q_in_base_z -
+            d_G_m_yx*q_in_base_y;
+        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_c_in_base_z_4*q_in_base_x +
+            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y - M_ta_t_8*q_in_base_x -
+            d0_G_m1_in_base_z*n_m1_in_base_z - d0_c_in_base_z_3*q_in_base_y -
+            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x;
         /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
@@ -1361,6 +1191,10 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upru-V19) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y +
+            n_m1_in_base_z*omega_z;
+        /* (upru-V1) velocity of the connection point */
         const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
             S_dot_z*upru_base_frame_zx;
         const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
@@ -1369,30 +1203,27 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
             S_dot_z*upru_base_frame_zz;
         const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
         const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V19) rate of joint 1 */
+        /* (upru-V20) rate of joint 1 */
         const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
         const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V23) angular velocity of link 1 */
+        const real qd_1_t_3 = inv_end_p1_r5_x*(eta_1 + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
+        /* (upru-V24) angular velocity of link 1 */
         const real omega_1_t = qd_1_t*s_2;
         const real omega_1_t_2 = c_2*qd_1_t;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_x = omega_1_t_2*qd_1_t_2;
         const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V22) rate of joint 4 */
-        const real qd_4_t = omega_x*(axis_z_x - axis_x_upru_axes4_x*o_4_x) + omega_y*(axis_z_y -
-            axis_x_upru_axes4_y*o_4_x) + omega_z*(axis_z_z - axis_x_upru_axes4_z*o_4_x);
-        const real qd_4 = qd_4_t - inv_end_p1_r5_x*(qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 2 */
+        /* (upru-V25) angular velocity of link 2 */
         const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
         const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
         /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_4;
+        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_t = c_4*zeta_2_y;
         /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = zeta_4_x - zeta_2_t;
-        /* (upru-V26) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_4;
+        const real beta_4_x = -zeta_2_t - zeta_4_x;
+        /* (upru-V27) angular velocity of link 4 */
+        const real omega_4_z = omega_1_t - qd_1_t_3;
         /* (upru-A10) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
             axis_x_upru_axes4_z*omega_z;
@@ -1409,19 +1240,18 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
             omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
             end_p1_r5_x*omega_2_r1_x);
         const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-V25) centripetal tensor of link 2 */
+        /* (upru-V26) centripetal tensor of link 2 */
         const real W_2_t = omega_1_t*omega_1_t;
         const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
         const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
         const real W_2_xy = omega_1_t*omega_1_t_2;
+        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
+        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
+        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
         /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_x*omega_2_r1_x;
-        const real bias_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real bias_t_3 = 2*S_dot_r3_x;
-        const real bias_x = bias_t_3*omega_2_r1_y + omega_1_t*omega_2_r1_x*root_2 +
-            root_2*s_4*zeta_2_y;
-        const real bias_y = root_2*zeta_2_t + omega_1_t*omega_2_r1_y*root_2 -
-            bias_t_3*omega_2_r1_x;
+        const real bias_t = 2*S_dot_r3_x;
+        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
+        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
         /* (upru-A1) centripetal acceleration of the connection point */
         const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
@@ -1434,21 +1264,21 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
            the joint accelerations */
         const real rel_o_x = u_1_tip_x - bias_x;
         const real rel_o_y = u_1_tip_y - bias_y;
-        /* (upru-A13) remainder without the acceleration in: acceleration of joint 1 */
+        /* (upru-A14) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o_t = inv_v_1_r0_y*(c_4*rel_o_y + rel_o_x*s_4);
         const real qdd_1_o_t_2 = inv_root_2*(qdd_1_o_t*v_1_r0_x + rel_o_y*s_4 - c_4*rel_o_x);
-        /* (upru-A22) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (upru-A21) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o_t*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o_t;
-        /* (upru-A26) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (upru-A23) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upru-A28) acceleration tensor of link 2 */
+        /* (upru-A25) acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_1_o_t_2 - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_1_o_t_2;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upru-N24) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (upru-N30) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_x = B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
@@ -1461,39 +1291,36 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real acc_4_o_x = u_1_tip_x - c_4*g_r3_y - g_r1_x*s_4;
         const real acc_4_o_y = u_1_tip_y + g_r3_y*s_4 - c_4*g_r1_x;
         const real acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_r3_x;
-        /* (upru-A18) remainder without the acceleration in: acceleration of joint 4 */
-        const real qdd_4_o = -inv_end_p1_r5_x*nu_1 - inv_end_p1_r5_x*(n_m1_t*qdd_1_o_t_2 +
+        /* (upru-A29) remainder without the acceleration in: angular acceleration of link 4 */
+        const real alpha_4_o_x = alpha_2_o_y*c_4 - zeta_4_x - qdd_1_o_t_2*s_4;
+        const real alpha_4_o_y = omega_2_r1_x*qd_1_t_3 - alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2;
+        const real alpha_4_o_z = alpha_2_o_x - inv_end_p1_r5_x*(nu_1 + n_m1_t*qdd_1_o_t_2 +
             qdd_1_o_t*w_1_t_2);
-        /* (upru-A32) remainder without the acceleration in: angular acceleration of link 4 */
-        const real alpha_4_o_x = zeta_4_x + alpha_2_o_y*c_4 - qdd_1_o_t_2*s_4;
-        const real alpha_4_o_y = -alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2 - omega_2_r1_x*qd_4;
-        const real alpha_4_o_z = alpha_2_o_x + qdd_4_o;
-        /* (upru-V27) centripetal tensor of link 4 */
+        /* (upru-V28) centripetal tensor of link 4 */
         const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xy = omega_2_r1_x*omega_2_r1_y;
         const real W_4_xz = omega_2_r1_x*omega_4_z;
         const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A34) acceleration tensor of link 4 */
-        const real B_4_o_xy = W_4_xy - alpha_4_o_z;
+        /* (upru-A31) acceleration tensor of link 4 */
+        const real B_4_o_xy = W_2_xy_2 - alpha_4_o_z;
         const real B_4_o_xz = W_4_xz + alpha_4_o_y;
-        const real B_4_o_yx = W_4_xy + alpha_4_o_z;
+        const real B_4_o_yx = W_2_xy_2 + alpha_4_o_z;
         const real B_4_o_yz = W_4_yz - alpha_4_o_x;
         const real B_4_o_zx = W_4_xz - alpha_4_o_y;
         const real B_4_o_zy = W_4_yz + alpha_4_o_x;
-        /* (upru-N14) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (upru-N22) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
-        const real mu_4_o_x = B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + acc_4_o_z*h_4_z -
-            B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - J_4_xz*(W_4_t - bias_t_2) - acc_4_o_y*h_4_x;
-        const real mu_4_o_y = B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + J_4_xy*(W_4_t - bias_t) +
-            acc_4_o_x*h_4_x - B_4_o_xy*J_4_xz - B_4_o_zx*Sigma_4_xx - acc_4_o_z*h_4_y;
-        const real mu_4_o_z = B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(bias_t - bias_t_2) +
+        const real mu_4_o_x = B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
+            acc_4_o_z*h_4_z - B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - acc_4_o_y*h_4_x;
+        const real mu_4_o_y = B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + acc_4_o_x*h_4_x -
+            B_4_o_xy*J_4_xz - B_4_o_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_o_z*h_4_y;
+        const real mu_4_o_z = B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
             acc_4_o_y*h_4_y - B_4_o_xy*Sigma_4_yy - B_4_o_yz*J_4_xy - acc_4_o_x*h_4_z;
-        /* (upru-N28) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (upru-N32) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_o_x = mu_2_o_x + mu_4_o_z;
         const real N_2_o_y = mu_2_o_y + c_4*mu_4_o_x - mu_4_o_y*s_4;
         const real N_2_o_z = mu_2_o_z + c_4*mu_4_o_y + mu_4_o_x*s_4;
-        /* (upru-N40) remainder without the acceleration in: force at the connection point that balances
+        /* (upru-N44) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_end_p1_r5_x*mu_4_o_z;
         const real G_o_t_2 = inv_root_2*(N_2_o_z + G_o_t*n_m1_t);
@@ -1501,40 +1328,40 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
             N_2_o_x*s_2);
         /* (upru-N8) remainder without the acceleration in: inertia force of link 4 from its turning about
            its reference point */
-        const real phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(bias_t + bias_t_2);
-        /* (upru-N48) remainder without the acceleration in: leg force on the platform without actuation
+        const real phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5);
+        /* (upru-N56) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = G_o_t_3*s_4 + h_4_y*(W_4_t + bias_t_2) - B_4_o_xy*h_4_z -
-            B_4_o_xz*h_4_x - G_o_t_2*c_4;
-        const real c_o_y = G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_4_t + bias_t) - B_4_o_yx*h_4_y -
+        const real c_o_x = G_o_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_o_xy*h_4_z - B_4_o_xz*h_4_x
+            - G_o_t_2*c_4;
+        const real c_o_y = G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_o_yx*h_4_y -
             B_4_o_yz*h_4_x;
-        /* (upru-N54) velocity and gravity terms of the leg force */
+        /* (upru-N62) velocity and gravity terms of the leg force */
         const real U_in_base_x = axis_z_x*phi_4_o_z - axis_x_upru_axes4_x*c_o_x -
             axis_y_upru_axes4_in_base_x*c_o_y;
         const real U_in_base_y = axis_z_y*phi_4_o_z - axis_x_upru_axes4_y*c_o_x -
             axis_y_upru_axes4_in_base_y*c_o_y;
         const real U_in_base_z = axis_z_z*phi_4_o_z - axis_x_upru_axes4_z*c_o_x -
             axis_y_upru_axes4_in_base_z*c_o_y;
-        /* (upru-N44) remainder without the acceleration in: moment at the connection point that balances
+        /* (upru-N52) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_t = mu_4_o_z*o_4_x;
+        const real G_m_o_x = G_o_t*end_p1_r3_x;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_z*q_in_base_y + axis_z_x*mu_4_o_z -
-            G_m_o_t*axis_x_upru_axes4_x - U_in_base_y*q_in_base_z;
+            G_m_o_x*axis_x_upru_axes4_x - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z + axis_z_y*mu_4_o_z -
-            G_m_o_t*axis_x_upru_axes4_y - U_in_base_z*q_in_base_x;
+            G_m_o_x*axis_x_upru_axes4_y - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x + axis_z_z*mu_4_o_z -
-            G_m_o_t*axis_x_upru_axes4_z - U_in_base_x*q_in_base_y;
+            G_m_o_x*axis_x_upru_axes4_z - U_in_base_x*q_in_base_y;
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
         const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
         const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        o->sum[0][k] = Q_t_12;  /* total_upru_xx */
-        o->sum[1][k] = Q_t_13;  /* total_upru_xy */
-        o->sum[2][k] = Q_t_14;  /* total_upru_xz */
-        o->sum[3][k] = Q_t_16;  /* total_upru_yy */
-        o->sum[4][k] = Q_t_17;  /* total_upru_yz */
-        o->sum[5][k] = Q_t_19;  /* total_upru_zz */
+        o->sum[0][k] = Q_t_10;  /* total_upru_xx */
+        o->sum[1][k] = Q_t_11;  /* total_upru_xy */
+        o->sum[2][k] = Q_t_12;  /* total_upru_xz */
+        o->sum[3][k] = Q_t_14;  /* total_upru_yy */
+        o->sum[4][k] = Q_t_15;  /* total_upru_yz */
+        o->sum[5][k] = Q_t_17;  /* total_upru_zz */
         o->sum[6][k] = M_ta_t_12;  /* total_upru_xx_2 */
         o->sum[7][k] = M_ta_t_13;  /* total_upru_xy_2 */
         o->sum[8][k] = M_ta_t_14;  /* total_upru_xz_2 */
@@ -1748,7 +1575,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 4575 mul, 2943 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1872,7 +1699,6 @@ INLINE void M_legs_upru(const prepared *m, size_t leg, size_t legs, const M_valu
         const real R_zx = s->R_zx[j];
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
-        const real J_2_xx = m->J_2_xx[i];
         const real J_2_xy = m->J_2_xy[i];
         const real J_2_xz = m->J_2_xz[i];
         const real J_2_yy = m->J_2_yy[i];
@@ -1884,6 +1710,7 @@ INLINE void M_legs_upru(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_4_yy = m->J_4_yy[i];
         const real J_4_yz = m->J_4_yz[i];
         const real J_4_zz = m->J_4_zz[i];
+        const real Jc_2_xx = m->Jc_2_xx[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
         const real branch_4 = m->branch_4[i];
@@ -2004,10 +1831,24 @@ INLINE void M_legs_upru(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_upru_axes4_in_base_x*axis_z_z;
         const real axis_x_upru_axes4_z = axis_y_upru_axes4_in_base_x*axis_z_y -
             axis_y_upru_axes4_in_base_y*axis_z_x;
+        /* (upru-G5) inertia tensor of link 4 about the connection point */
+        const real J_4_t = J_4_yz*s_4;
+        const real _x = J_4_yy*c_4 - J_4_t;
+        const real J_4_t_2 = J_4_yz*c_4;
+        const real _x_2 = J_4_t_2 - J_4_zz*s_4;
+        const real _x_3 = J_4_xy*c_4 - J_4_xz*s_4;
+        const real _y = J_4_xy*s_4 + J_4_xz*c_4;
+        /* (upru-N13) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xy = _x_3 - J_2_xz;
+        const real _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_4 + _x_2*c_4 - J_2_yz);
+        /* (upru-N9) moment about joint 4 that accelerates joint 4, per unit */
+        const real L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
+        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_t = end_p1_r3_x*s_4;
         /* (upru-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
         const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
@@ -2015,404 +1856,220 @@ INLINE void M_legs_upru(const prepared *m, size_t leg, size_t legs, const M_valu
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         const real w_1_t_3 = inv_v_1_r0_y*s_4;
         const real w_1_t_4 = c_4*inv_v_1_r0_y;
-        const real w_1_r0_x = c_4*w_1_t_3 - s_4*w_1_t_4;
-        const real w_1_r0_y = c_4*w_1_t_4 + s_4*w_1_t_3;
-        const real w_1_t_5 = s_2*w_1_r0_x;
-        const real w_1_t_6 = c_2*w_1_r0_x;
         /* (upru-V9) force part of reciprocal wrench 2 */
         const real w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x;
         const real _r1_x = c_4*inv_root_2 - s_4*w_2_t;
         const real _r1_y = -c_4*w_2_t - inv_root_2*s_4;
-        /* (upru-A21) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = s_2*w_1_t_5;
-        const real d_alpha_1_t_2 = c_2*w_1_t_5;
-        const real d_alpha_1_t_3 = s_2*w_1_t_6;
-        const real d_alpha_1_t_4 = c_2*w_1_t_6;
-        const real d_alpha_1_t_5 = s_2*w_1_r0_y;
-        const real d_alpha_1_t_6 = c_2*w_1_r0_y;
-        const real _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2;
-        const real _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2;
-        const real _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2;
-        const real _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2;
-        /* (upru-V9) force part of reciprocal wrench 2 */
-        const real w_2_r0_x = _r1_x*c_4 - _r1_y*s_4;
-        const real w_2_r0_y = _r1_x*s_4 + _r1_y*c_4;
         /* (upru-V13) force part of reciprocal wrench 4 */
         const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        const real w_4_t = end_p1_r3_x*inv_end_p1_r5_x*inv_root_2*s_4;
+        const real w_4_t = inv_end_p1_r5_x*inv_root_2*n_m1_t;
         const real w_4_t_2 = inv_v_1_r0_y*(inv_end_p1_r5_x*w_1_t_2 + v_1_r0_x*w_4_t);
         const real _r1_x_2 = c_4*w_4_t - s_4*w_4_t_2;
         const real _r1_y_2 = -c_4*w_4_t_2 - s_4*w_4_t;
-        /* (upru-A25) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = _y_2*c_4 + s_4*w_2_r0_x;
-        const real _y_3 = c_4*w_2_r0_x - _y_2*s_4;
-        const real _x_4 = s_4*w_2_r0_y - c_4*d_alpha_1_t_6;
-        const real _y_4 = c_4*w_2_r0_y + d_alpha_1_t_6*s_4;
-        const real d_alpha_2_t = _x_2*c_4;
-        const real d_alpha_2_t_2 = _x_2*s_4;
-        const real _x_5 = _x_3*c_4 + _x_4*s_4;
-        const real _y_5 = _x_4*c_4 - _x_3*s_4;
-        const real _x_6 = _y_3*c_4 + _y_4*s_4;
-        const real _y_6 = _y_4*c_4 - _y_3*s_4;
-        /* (upru-A31) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d_alpha_4_zx = _r1_x_2 + _y*c_4 + d_alpha_1_t_5*s_4;
-        const real d_alpha_4_zy = _r1_y_2 + c_4*d_alpha_1_t_5 - _y*s_4;
-        /* (upru-N13) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d_mu_4_t = J_4_xy*d_alpha_4_zx + J_4_yy*_x_5 + J_4_yz*_x_6;
-        const real d_mu_4_t_2 = J_4_xz*d_alpha_4_zy + J_4_yz*_y_5 + J_4_zz*_y_6;
-        const real d_mu_4_t_3 = J_4_xx*_x + J_4_xy*d_alpha_2_t - J_4_xz*d_alpha_2_t_2;
-        const real d_mu_4_xy = J_4_xy*d_alpha_4_zy + J_4_yy*_y_5 + J_4_yz*_y_6 - h_4_x;
-        const real d_mu_4_xz = h_4_z + J_4_xy*_x + J_4_yy*d_alpha_2_t - J_4_yz*d_alpha_2_t_2;
-        const real d_mu_4_yx = h_4_x + J_4_xz*d_alpha_4_zx + J_4_yz*_x_5 + J_4_zz*_x_6;
-        const real d_mu_4_yz = J_4_xz*_x + J_4_yz*d_alpha_2_t - h_4_y - J_4_zz*d_alpha_2_t_2;
-        const real d_mu_4_zx = J_4_xx*d_alpha_4_zx + J_4_xy*_x_5 + J_4_xz*_x_6 - h_4_z;
-        const real d_mu_4_zy = h_4_y + J_4_xx*d_alpha_4_zy + J_4_xy*_y_5 + J_4_xz*_y_6;
-        const real _x_7 = c_4*d_mu_4_t - d_mu_4_yx*s_4;
-        const real _y_7 = c_4*d_mu_4_yx + d_mu_4_t*s_4;
-        const real _x_8 = c_4*d_mu_4_xy - d_mu_4_t_2*s_4;
-        const real _y_8 = c_4*d_mu_4_t_2 + d_mu_4_xy*s_4;
-        const real _x_9 = c_4*d_mu_4_zx - d_mu_4_zy*s_4;
-        const real _y_9 = c_4*d_mu_4_zy + d_mu_4_zx*s_4;
-        /* (upru-N27) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_zx = J_2_xy*_x + c_4*d_mu_4_yz + d_mu_4_xz*s_4 - J_2_yz*_x_2;
-        const real d_N_2_zy = J_2_xy*_y + J_2_yy*w_2_r0_x + _y_7*c_4 - J_2_yz*_y_2 - _y_8*s_4;
-        const real d_N_2_zz = J_2_xy*d_alpha_1_t_5 + J_2_yy*w_2_r0_y + J_2_yz*d_alpha_1_t_6 +
-            _y_7*s_4 + _y_8*c_4;
-        /* (upru-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (upru-G4) first moment of link 4 about the connection point */
+        const real h_4_r1_x = c_4*h_4_y - h_4_z*s_4;
+        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_x = s_2*(d_mu_4_t_3 + J_2_xx*_x - J_2_xz*_x_2) - c_2*(J_2_zz*_x_2 +
-            c_4*d_mu_4_xz - J_2_xz*_x - d_mu_4_yz*s_4);
-        const real d_Gamma_1_y = s_2*(_x_9 + J_2_xx*_y + J_2_xy*w_2_r0_x - J_2_xz*_y_2) -
-            c_2*(J_2_zz*_y_2 + _x_7*c_4 - J_2_xz*_y - J_2_yz*w_2_r0_x - _x_8*s_4);
-        const real d_Gamma_1_z = s_2*(_y_9 + J_2_xx*d_alpha_1_t_5 + J_2_xy*w_2_r0_y +
-            J_2_xz*d_alpha_1_t_6) - c_2*(_x_7*s_4 + _x_8*c_4 - J_2_xz*d_alpha_1_t_5 -
-            J_2_yz*w_2_r0_y - J_2_zz*d_alpha_1_t_6);
-        const real d_Gamma_1_r1_y = c_4*d_Gamma_1_z - d_Gamma_1_y*s_4;
-        /* (upru-N31) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        const real d_Gamma_1_t = L_c4_r2_y*inv_end_p1_r5_x;
+        const real d_Gamma_1_t_2 = inv_root_2*(_y_2 + d_Gamma_1_t*n_m1_t);
+        const real d_Gamma_1_t_3 = c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_4 - _x_2*s_4)) +
+            d_Gamma_1_t*w_1_t_2 + d_Gamma_1_t_2*v_1_r0_x - s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2);
+        const real d_Gamma_1_t_4 = c_2*d_Gamma_1_t_2;
+        const real d_Gamma_1_x = c_2*h_4_x + h_4_r1_x*s_2 - d_Gamma_1_t_3*inv_v_1_r0_y;
+        const real d_Gamma_1_y = c_4*h_4_z + h_4_y*s_4 - d_Gamma_1_t_2*s_2;
+        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_r1_y = c_4*d_N_2_zz - d_N_2_zy*s_4;
-        /* (upru-N47) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_t = _y*inv_end_p1_r5_x;
+        const real d_Gamma_2_t_2 = inv_root_2*(J_2_yy + c_4*(J_4_t + J_4_zz*c_4) +
+            d_Gamma_2_t*n_m1_t + s_4*(J_4_t_2 + J_4_yy*s_4));
+        const real d_Gamma_2_t_3 = inv_v_1_r0_y*(d_Gamma_2_t*w_1_t_2 + d_Gamma_2_t_2*v_1_r0_x -
+            _y_2);
+        const real d_Gamma_2_y = d_Gamma_2_t_2 + h_4_x;
+        /* (upru-N25) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
+           and weight */
+        const real d_Gamma_4_t = J_4_xx*inv_end_p1_r5_x;
+        const real d_Gamma_4_t_2 = inv_root_2*(_y + d_Gamma_4_t*n_m1_t);
+        const real d_Gamma_4_t_3 = inv_v_1_r0_y*(d_Gamma_4_t*w_1_t_2 + d_Gamma_4_t_2*v_1_r0_x -
+            L_c4_r2_y);
+        const real d_Gamma_4_x = c_4*d_Gamma_4_t_2 - h_4_z - d_Gamma_4_t_3*s_4;
+        const real d_Gamma_4_y = h_4_y - c_4*d_Gamma_4_t_3 - d_Gamma_4_t_2*s_4;
+        /* (upru-N39) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_r1_x = -c_2*d_Gamma_1_y - d_Gamma_1_t_4*s_2;
+        const real d_Gamma_1_r1_y = c_2*d_Gamma_1_t_4 - d_Gamma_1_y*s_2;
+        const real d_Gamma_1_r3_y = c_4*d_Gamma_1_x - d_Gamma_1_r1_y*s_4;
+        /* (upru-N35) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_r1_y = -c_4*d_Gamma_2_t_3 - d_Gamma_2_y*s_4;
+        /* (upru-N43) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_xz = d_Gamma_1_r1_x*w_1_t_3 - _r1_x*h_4_r1_x;
+        const real d_G_yz = d_Gamma_1_r1_x*w_1_t_4 - _r1_y*h_4_r1_x;
+        /* (upru-A28) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real d_alpha_4_zy = _r1_y_2 + s_2*w_1_t_4;
+        /* (upru-N55) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_4_zx*h_4_z - _r1_x*(c_4*d_N_2_zy + d_N_2_zz*s_4) -
-            _r1_x_2*d_mu_4_zx - _x_6*h_4_x - w_1_t_3*(c_4*d_Gamma_1_y + d_Gamma_1_z*s_4);
-        const real d_c_xy = d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_mu_4_zy -
-            _y_6*h_4_x - d_Gamma_1_r1_y*w_1_t_3;
-        const real d_c_xz = _x*h_4_z + d_alpha_2_t_2*h_4_x - _r1_x*d_N_2_zx - _r1_x_2*d_mu_4_t_3 -
-            d_Gamma_1_x*w_1_t_3;
-        const real d_c_yz = d_alpha_2_t*h_4_x - _r1_y*d_N_2_zx - _r1_y_2*d_mu_4_t_3 - _x*h_4_y -
-            d_Gamma_1_x*w_1_t_4;
-        /* (upru-N49) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + _r1_y_2*d_mu_4_zy +
-            d_Gamma_1_r1_y*w_1_t_4 + d_alpha_4_zy*h_4_y - _y_5*h_4_x;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_alpha_2_t*h_4_z + d_alpha_2_t_2*h_4_y;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = axis_x_upru_axes4_x*d_c_xy + axis_z_x*d_c_yz -
-            Q_t_2*axis_y_upru_axes4_in_base_x;
-        const real Q_t_6 = axis_x_upru_axes4_y*d_c_xy + axis_z_y*d_c_yz -
-            Q_t_2*axis_y_upru_axes4_in_base_y;
-        const real Q_t_7 = axis_x_upru_axes4_z*d_c_xy + axis_z_z*d_c_yz -
-            Q_t_2*axis_y_upru_axes4_in_base_z;
-        const real Q_t_8 = Q_t_4*axis_z_x - axis_x_upru_axes4_x*d_c_xz;
-        const real Q_t_9 = Q_t_4*axis_z_y - axis_x_upru_axes4_y*d_c_xz;
-        const real Q_t_10 = Q_t_4*axis_z_z - axis_x_upru_axes4_z*d_c_xz;
-        const real Q_t_11 = Q_t_5*axis_y_upru_axes4_in_base_x - Q_t_8*axis_z_x;
-        const real Q_t_12 = 2*Q_t_11 + d_c_xx;
-        const real Q_t_13 = Q_t_5*axis_y_upru_axes4_in_base_y + Q_t_6*axis_y_upru_axes4_in_base_x
-            - Q_t_8*axis_z_y - Q_t_9*axis_z_x;
-        const real Q_t_14 = Q_t_5*axis_y_upru_axes4_in_base_z + Q_t_7*axis_y_upru_axes4_in_base_x
-            - Q_t_10*axis_z_x - Q_t_8*axis_z_z;
-        const real Q_t_15 = Q_t_6*axis_y_upru_axes4_in_base_y - Q_t_9*axis_z_y;
-        const real Q_t_16 = 2*Q_t_15 + d_c_xx;
-        const real Q_t_17 = Q_t_6*axis_y_upru_axes4_in_base_z + Q_t_7*axis_y_upru_axes4_in_base_y
-            - Q_t_10*axis_z_y - Q_t_9*axis_z_z;
-        const real Q_t_18 = Q_t_7*axis_y_upru_axes4_in_base_z - Q_t_10*axis_z_z;
-        const real Q_t_19 = 2*Q_t_18 + d_c_xx;
+        const real d_c_xx = h_4_z*(_r1_x_2 + s_2*w_1_t_3) - _r1_x*(c_4*d_Gamma_2_y -
+            d_Gamma_2_t_3*s_4) - _r1_x_2*d_Gamma_4_x - h_4_x*(_r1_x*c_4 + v_1_t_2*w_1_t_3) -
+            w_1_t_3*(c_4*d_Gamma_1_r1_y + d_Gamma_1_x*s_4);
+        const real d_c_xy = d_alpha_4_zy*h_4_z - _r1_x*d_Gamma_2_r1_y - _r1_x_2*d_Gamma_4_y -
+            d_Gamma_1_r3_y*w_1_t_3 - h_4_x*(_r1_y*c_4 + v_1_t_2*w_1_t_4);
+        const real d_c_yy = h_4_x*(_r1_y*s_4 - v_1_t*w_1_t_4) - _r1_y*d_Gamma_2_r1_y -
+            _r1_y_2*d_Gamma_4_y - d_Gamma_1_r3_y*w_1_t_4 - d_alpha_4_zy*h_4_y;
+        /* (upru-N57) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = R(0.5)*d_c_xx;
+        const real Q_t_2 = R(0.5)*d_c_yy;
+        const real Q_t_3 = Q_t*axis_x_upru_axes4_x + axis_y_upru_axes4_in_base_x*d_c_xy -
+            axis_z_x*d_G_xz;
+        const real Q_t_4 = Q_t*axis_x_upru_axes4_y + axis_y_upru_axes4_in_base_y*d_c_xy -
+            axis_z_y*d_G_xz;
+        const real Q_t_5 = Q_t*axis_x_upru_axes4_z + axis_y_upru_axes4_in_base_z*d_c_xy -
+            axis_z_z*d_G_xz;
+        const real Q_t_6 = Q_t_2*axis_y_upru_axes4_in_base_x - axis_z_x*d_G_yz;
+        const real Q_t_7 = Q_t_2*axis_y_upru_axes4_in_base_y - axis_z_y*d_G_yz;
+        const real Q_t_8 = Q_t_2*axis_y_upru_axes4_in_base_z - axis_z_z*d_G_yz;
+        const real Q_t_9 = Q_t_3*axis_x_upru_axes4_x + Q_t_6*axis_y_upru_axes4_in_base_x;
+        const real Q_t_10 = 2*Q_t_9;
+        const real Q_t_11 = Q_t_3*axis_x_upru_axes4_y + Q_t_4*axis_x_upru_axes4_x +
+            Q_t_6*axis_y_upru_axes4_in_base_y + Q_t_7*axis_y_upru_axes4_in_base_x;
+        const real Q_t_12 = Q_t_3*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_x +
+            Q_t_6*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_x;
+        const real Q_t_13 = Q_t_4*axis_x_upru_axes4_y + Q_t_7*axis_y_upru_axes4_in_base_y;
+        const real Q_t_14 = 2*Q_t_13;
+        const real Q_t_15 = Q_t_4*axis_x_upru_axes4_z + Q_t_5*axis_x_upru_axes4_y +
+            Q_t_7*axis_y_upru_axes4_in_base_z + Q_t_8*axis_y_upru_axes4_in_base_y;
+        const real Q_t_16 = Q_t_5*axis_x_upru_axes4_z + Q_t_8*axis_y_upru_axes4_in_base_z;
+        const real Q_t_17 = 2*Q_t_16;
         /* (upru-V18) moment part of reciprocal wrench 4 */
         const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
-        /* (upru-N12) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d0_mu_4_t = J_4_xy*o_4_x;
-        const real d0_mu_4_t_2 = J_4_xz*o_4_x;
-        const real d0_mu_4_t_3 = J_4_xx*o_4_x;
-        const real _x_10 = d0_mu_4_t_2*s_4 - c_4*d0_mu_4_t;
-        const real _y_10 = -c_4*d0_mu_4_t_2 - d0_mu_4_t*s_4;
-        const real _y_11 = J_4_xy*s_4 + J_4_xz*c_4;
-        const real d0_mu_4_t_4 = _y_10*c_4;
-        const real d0_mu_4_t_5 = _y_10*s_4;
-        const real d0_mu_4_t_6 = c_4*d0_mu_4_t_3;
-        const real d0_mu_4_t_7 = d0_mu_4_t_3*s_4;
-        /* (upru-N34) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (upru-N38) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d0_Gamma_1_t = J_4_xx*s_2;
-        const real d0_Gamma_1_x = d0_Gamma_1_t - c_2*(J_4_xy*c_4 - J_4_xz*s_4);
-        const real d0_Gamma_1_t_2 = d0_mu_4_t_6*s_2;
-        const real d0_Gamma_1_y = -d0_Gamma_1_t_2 - _x_10*c_2*c_4;
-        const real d0_Gamma_1_t_3 = d0_mu_4_t_7*s_2;
-        const real d0_Gamma_1_z = -d0_Gamma_1_t_3 - _x_10*c_2*s_4;
-        const real d0_Gamma_1_r1_x = c_4*d0_Gamma_1_y + d0_Gamma_1_z*s_4;
-        const real d0_Gamma_1_r1_y = c_4*d0_Gamma_1_z - d0_Gamma_1_y*s_4;
-        /* (upru-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        const real d0_Gamma_1_t = L_c4_r2_y*o_4_x;
+        /* (upru-N34) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d0_Gamma_2_r1_x = c_4*d0_mu_4_t_4 + d0_mu_4_t_5*s_4;
-        const real d0_Gamma_2_r1_y = c_4*d0_mu_4_t_5 - d0_mu_4_t_4*s_4;
-        /* (upru-N38) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_xy = _r1_x*d0_Gamma_2_r1_y + d0_Gamma_1_r1_y*w_1_t_3;
-        const real d0_G_yy = _r1_y*d0_Gamma_2_r1_y + d0_Gamma_1_r1_y*w_1_t_4;
-        /* (upru-N46) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d0_Gamma_2_t = _y*o_4_x;
+        /* (upru-N24) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_4_t = J_4_xx*o_4_x;
+        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d0_c_xx = _r1_x_2*d0_mu_4_t_3 - _r1_x*d0_Gamma_2_r1_x - d0_Gamma_1_r1_x*w_1_t_3
-            - h_4_z*o_4_x;
-        const real d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - _r1_x*_y_11 - d0_Gamma_1_x*w_1_t_3;
-        const real d0_c_yx = _r1_y_2*d0_mu_4_t_3 + h_4_y*o_4_x - _r1_y*d0_Gamma_2_r1_x -
-            d0_Gamma_1_r1_x*w_1_t_4;
-        const real d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - _r1_y*_y_11 - d0_Gamma_1_x*w_1_t_4;
+        const real d0_c_xx = _r1_x*d0_Gamma_2_t + _r1_x_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_3 -
+            h_4_z*o_4_x;
+        const real d0_c_xz = h_4_z - J_4_xx*_r1_x_2 - L_c4_r2_y*w_1_t_3 - _r1_x*_y;
+        const real d0_c_yx = _r1_y*d0_Gamma_2_t + _r1_y_2*d0_Gamma_4_t + d0_Gamma_1_t*w_1_t_4 +
+            h_4_y*o_4_x;
+        const real d0_c_yz = -h_4_y - J_4_xx*_r1_y_2 - L_c4_r2_y*w_1_t_4 - _r1_y*_y;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_6 = Q_t_17*q_in_base_x;
+        const real M_ta_t = Q_t_11*q_in_base_z;
+        const real M_ta_t_2 = Q_t_12*q_in_base_y;
+        const real M_ta_t_3 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
+        const real M_ta_t_4 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
+        const real M_ta_t_5 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
+        const real M_ta_t_6 = Q_t_15*q_in_base_x;
         const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
+        const real M_ta_t_8 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
+        const real M_ta_t_9 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
+        const real M_ta_t_10 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
         const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upru-N46) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (upru-N54) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real _x_11 = c_4*d0_c_xx - d0_c_yx*s_4;
-        const real _y_12 = c_4*d0_c_yx + d0_c_xx*s_4;
-        const real _x_12 = d0_G_yy*s_4 - c_4*d0_G_xy;
-        const real _y_13 = -c_4*d0_G_yy - d0_G_xy*s_4;
-        const real _x_13 = c_4*d0_c_xz - d0_c_yz*s_4;
-        const real _y_14 = c_4*d0_c_yz + d0_c_xz*s_4;
-        const real _x_14 = _x_11*c_4 - _x_12*s_4;
-        const real _y_15 = _x_11*s_4 + _x_12*c_4;
-        const real _x_15 = _y_12*c_4 - _y_13*s_4;
-        const real _y_16 = _y_12*s_4 + _y_13*c_4;
-        const real d0_c_t = _x_13*s_2;
-        const real d0_c_t_2 = _x_13*c_2;
-        const real d0_c_t_3 = _x_14*s_2;
-        const real d0_c_t_4 = _x_14*c_2;
-        const real d0_c_t_5 = _y_15*s_2;
-        const real d0_c_t_6 = _y_15*c_2;
-        const real _x_16 = c_2*d0_c_t + d0_c_t_3*s_2;
-        const real _y_17 = c_2*d0_c_t_3 - d0_c_t*s_2;
-        const real _x_17 = c_2*d0_c_t_2 + d0_c_t_4*s_2;
-        const real _y_18 = c_2*d0_c_t_4 - d0_c_t_2*s_2;
-        const real _x_18 = -_x_15*s_2 - _y_14*c_2;
-        const real _y_19 = _y_14*s_2 - _x_15*c_2;
-        const real _x_19 = d0_c_t_5*s_1 - _y_16*c_1;
-        const real _y_20 = _y_16*s_1 + c_1*d0_c_t_5;
-        const real _x_20 = -_x_16*s_1 - _x_18*c_1;
-        const real _y_21 = _x_18*s_1 - _x_16*c_1;
-        const real _x_21 = -_y_17*s_1 - _y_19*c_1;
-        const real _y_22 = _y_19*s_1 - _y_17*c_1;
-        const real _x_22 = -_x_19*c_1 - _x_20*s_1;
-        const real _y_23 = _x_19*s_1 - _x_20*c_1;
-        const real _x_23 = -_y_20*c_1 - _y_21*s_1;
-        const real _y_24 = _y_20*s_1 - _y_21*c_1;
-        const real _x_24 = c_1*d0_c_t_6 - _x_17*s_1;
-        const real _y_25 = -_x_17*c_1 - d0_c_t_6*s_1;
-        const real _x_25 = _x_22*upru_base_frame_xx + _x_23*upru_base_frame_xy +
-            _x_24*upru_base_frame_xz;
-        const real _y_26 = _x_22*upru_base_frame_yx + _x_23*upru_base_frame_yy +
-            _x_24*upru_base_frame_yz;
-        const real _z = _x_22*upru_base_frame_zx + _x_23*upru_base_frame_zy +
-            _x_24*upru_base_frame_zz;
-        const real _x_26 = _y_23*upru_base_frame_xx + _y_24*upru_base_frame_xy +
-            _y_25*upru_base_frame_xz;
-        const real _y_27 = _y_23*upru_base_frame_yx + _y_24*upru_base_frame_yy +
-            _y_25*upru_base_frame_yz;
-        const real _z_2 = _y_23*upru_base_frame_zx + _y_24*upru_base_frame_zy +
-            _y_25*upru_base_frame_zz;
-        const real _x_27 = _x_21*upru_base_frame_xx + _y_18*upru_base_frame_xz +
-            _y_22*upru_base_frame_xy;
-        const real _y_28 = _x_21*upru_base_frame_yx + _y_18*upru_base_frame_yz +
-            _y_22*upru_base_frame_yy;
-        const real _z_3 = _x_21*upru_base_frame_zx + _y_18*upru_base_frame_zz +
-            _y_22*upru_base_frame_zy;
-        const real _y_29 = _x_25*upru_base_frame_yx + _x_26*upru_base_frame_yy +
-            _x_27*upru_base_frame_yz;
-        const real _z_4 = _x_25*upru_base_frame_zx + _x_26*upru_base_frame_zy +
-            _x_27*upru_base_frame_zz;
-        const real _x_28 = _y_26*upru_base_frame_xx + _y_27*upru_base_frame_xy +
-            _y_28*upru_base_frame_xz;
-        const real _y_30 = _y_26*upru_base_frame_yx + _y_27*upru_base_frame_yy +
-            _y_28*upru_base_frame_yz;
-        const real _z_5 = _y_26*upru_base_frame_zx + _y_27*upru_base_frame_zy +
-            _y_28*upru_base_frame_zz;
-        const real _x_29 = _z*upru_base_frame_xx + _z_2*upru_base_frame_xy +
-            _z_3*upru_base_frame_xz;
-        const real _y_31 = _z*upru_base_frame_yx + _z_2*upru_base_frame_yy +
-            _z_3*upru_base_frame_yz;
-        const real _z_6 = _z*upru_base_frame_zx + _z_2*upru_base_frame_zy +
-            _z_3*upru_base_frame_zz;
+        const real d0_c_in_base_x = axis_x_upru_axes4_x*d0_c_xx +
+            axis_y_upru_axes4_in_base_x*d0_c_yx;
+        const real d0_c_in_base_y = axis_x_upru_axes4_y*d0_c_xx +
+            axis_y_upru_axes4_in_base_y*d0_c_yx;
+        const real d0_c_in_base_z = axis_x_upru_axes4_z*d0_c_xx +
+            axis_y_upru_axes4_in_base_z*d0_c_yx;
+        const real d0_c_in_base_x_2 = axis_x_upru_axes4_x*d0_c_xz +
+            axis_y_upru_axes4_in_base_x*d0_c_yz;
+        const real d0_c_in_base_y_2 = axis_x_upru_axes4_y*d0_c_xz +
+            axis_y_upru_axes4_in_base_y*d0_c_yz;
+        const real d0_c_in_base_z_2 = axis_x_upru_axes4_z*d0_c_xz +
+            axis_y_upru_axes4_in_base_z*d0_c_yz;
+        const real d0_c_in_base_y_3 = axis_x_upru_axes4_y*d0_c_in_base_x +
+            axis_z_y*d0_c_in_base_x_2;
+        const real d0_c_in_base_z_3 = axis_x_upru_axes4_z*d0_c_in_base_x +
+            axis_z_z*d0_c_in_base_x_2;
+        const real d0_c_in_base_x_3 = axis_x_upru_axes4_x*d0_c_in_base_y +
+            axis_z_x*d0_c_in_base_y_2;
+        const real d0_c_in_base_y_4 = axis_x_upru_axes4_y*d0_c_in_base_y +
+            axis_z_y*d0_c_in_base_y_2;
+        const real d0_c_in_base_z_4 = axis_x_upru_axes4_z*d0_c_in_base_y +
+            axis_z_z*d0_c_in_base_y_2;
+        const real d0_c_in_base_x_4 = axis_x_upru_axes4_x*d0_c_in_base_z +
+            axis_z_x*d0_c_in_base_z_2;
+        const real d0_c_in_base_y_5 = axis_x_upru_axes4_y*d0_c_in_base_z +
+            axis_z_y*d0_c_in_base_z_2;
+        const real d0_c_in_base_z_5 = axis_x_upru_axes4_z*d0_c_in_base_z +
+            axis_z_z*d0_c_in_base_z_2;
         /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t - M_ta_t_2 - _x_25*upru_base_frame_xx -
-            _x_26*upru_base_frame_xy - _x_27*upru_base_frame_xz;
-        const real M_ta_t_13 = M_ta_t_3 + _y_29;
-        const real M_ta_t_14 = M_ta_t_4 - _z_4;
-        const real M_ta_t_15 = M_ta_t_5 - _x_28;
-        const real M_ta_t_16 = M_ta_t_7 + _y_30;
-        const real M_ta_t_17 = M_ta_t_8 - _z_5;
-        const real M_ta_t_18 = M_ta_t_9 - _x_29;
-        const real M_ta_t_19 = M_ta_t_10 + _y_31;
-        const real M_ta_t_20 = M_ta_t_11 + _z_6;
-        /* (upru-N42) coefficient of the acceleration in: moment at the connection point that balances the
+        const real M_ta_t_12 = M_ta_t - M_ta_t_2 - axis_x_upru_axes4_x*d0_c_in_base_x -
+            axis_z_x*d0_c_in_base_x_2;
+        const real M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_3;
+        const real M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_3;
+        const real M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_3;
+        const real M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_4;
+        const real M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_4;
+        const real M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_4;
+        const real M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_5;
+        const real M_ta_t_20 = M_ta_t_11 + d0_c_in_base_z_5;
+        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d0_G_m1_t = d0_Gamma_4_t*inv_end_p1_r5_x;
+        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d_G_m1_t = d_Gamma_4_x*inv_end_p1_r5_x;
+        const real d_G_m1_t_2 = d_Gamma_4_y*inv_end_p1_r5_x;
+        /* (upru-V6) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x;
+        const real n_m1_in_base_y = axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x;
+        const real n_m1_in_base_z = axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x;
+        /* (upru-N47) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d_G_m1_in_base_x = -axis_x_upru_axes4_x*d_G_m1_t -
+            axis_y_upru_axes4_in_base_x*d_G_m1_t_2;
+        const real d_G_m1_in_base_y = -axis_x_upru_axes4_y*d_G_m1_t -
+            axis_y_upru_axes4_in_base_y*d_G_m1_t_2;
+        const real d_G_m1_in_base_z = -axis_x_upru_axes4_z*d_G_m1_t -
+            axis_y_upru_axes4_in_base_z*d_G_m1_t_2;
+        /* (upru-N51) coefficient of the acceleration in: moment at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d0_G_m_t = d0_mu_4_t_3*o_4_x;
-        /* (upru-N43) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_t = d_mu_4_zx*o_4_x;
-        const real d_G_m_t_2 = d_mu_4_zy*o_4_x;
-        const real d_G_m_t_3 = d_mu_4_t_3*o_4_x;
-        /* (upru-N52) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real d_c_m_t = c_4*d_G_m_t;
-        const real d_c_m_t_2 = d_G_m_t*s_4;
-        const real d_c_m_t_3 = c_4*d_G_m_t_2;
-        const real d_c_m_t_4 = d_G_m_t_2*s_4;
-        const real d_c_m_t_5 = c_4*d_G_m_t_3;
-        const real d_c_m_t_6 = d_G_m_t_3*s_4;
-        const real _x_30 = c_4*d_c_m_t - d_c_m_t_3*s_4;
-        const real _y_32 = c_4*d_c_m_t_3 + d_c_m_t*s_4;
-        const real _x_31 = c_4*d_c_m_t_2 - d_c_m_t_4*s_4;
-        const real _y_33 = c_4*d_c_m_t_4 + d_c_m_t_2*s_4;
-        const real _x_32 = c_2*d_mu_4_t_3 - d_c_m_t_5*s_2;
-        const real _y_34 = -c_2*d_c_m_t_5 - d_mu_4_t_3*s_2;
-        const real _x_33 = _x_9*c_2 - _x_30*s_2;
-        const real _y_35 = -_x_30*c_2 - _x_9*s_2;
-        const real _x_34 = _y_9*c_2 - _y_32*s_2;
-        const real _y_36 = -_y_32*c_2 - _y_9*s_2;
-        const real _x_35 = -_x_32*c_2 - _x_33*s_2;
-        const real _y_37 = _x_32*s_2 - _x_33*c_2;
-        const real _x_36 = -_y_34*c_2 - _y_35*s_2;
-        const real _y_38 = _y_34*s_2 - _y_35*c_2;
-        const real _x_37 = -_x_31*s_2 - c_2*d_c_m_t_6;
-        const real _y_39 = d_c_m_t_6*s_2 - _x_31*c_2;
-        const real _x_38 = -_x_34*s_1 - _y_33*c_1;
-        const real _y_40 = _y_33*s_1 - _x_34*c_1;
-        const real _x_39 = -_x_35*s_1 - _x_37*c_1;
-        const real _y_41 = _x_37*s_1 - _x_35*c_1;
-        const real _x_40 = -_y_37*s_1 - _y_39*c_1;
-        const real _y_42 = _y_39*s_1 - _y_37*c_1;
-        const real _x_41 = -_x_38*c_1 - _x_39*s_1;
-        const real _y_43 = _x_38*s_1 - _x_39*c_1;
-        const real _x_42 = -_y_40*c_1 - _y_41*s_1;
-        const real _y_44 = _y_40*s_1 - _y_41*c_1;
-        const real _x_43 = -_x_36*s_1 - _y_36*c_1;
-        const real _y_45 = _y_36*s_1 - _x_36*c_1;
-        const real _x_44 = _x_41*upru_base_frame_xx + _x_42*upru_base_frame_xy +
-            _x_43*upru_base_frame_xz;
-        const real _y_46 = _x_41*upru_base_frame_yx + _x_42*upru_base_frame_yy +
-            _x_43*upru_base_frame_yz;
-        const real _z_7 = _x_41*upru_base_frame_zx + _x_42*upru_base_frame_zy +
-            _x_43*upru_base_frame_zz;
-        const real _x_45 = _y_43*upru_base_frame_xx + _y_44*upru_base_frame_xy +
-            _y_45*upru_base_frame_xz;
-        const real _y_47 = _y_43*upru_base_frame_yx + _y_44*upru_base_frame_yy +
-            _y_45*upru_base_frame_yz;
-        const real _z_8 = _y_43*upru_base_frame_zx + _y_44*upru_base_frame_zy +
-            _y_45*upru_base_frame_zz;
-        const real _x_46 = _x_40*upru_base_frame_xx + _y_38*upru_base_frame_xz +
-            _y_42*upru_base_frame_xy;
-        const real _y_48 = _x_40*upru_base_frame_yx + _y_38*upru_base_frame_yz +
-            _y_42*upru_base_frame_yy;
-        const real _z_9 = _x_40*upru_base_frame_zx + _y_38*upru_base_frame_zz +
-            _y_42*upru_base_frame_zy;
-        const real _x_47 = _x_44*upru_base_frame_xx + _x_45*upru_base_frame_xy +
-            _x_46*upru_base_frame_xz;
-        const real _y_49 = _x_44*upru_base_frame_yx + _x_45*upru_base_frame_yy +
-            _x_46*upru_base_frame_yz;
-        const real _z_10 = _x_44*upru_base_frame_zx + _x_45*upru_base_frame_zy +
-            _x_46*upru_base_frame_zz;
-        const real _x_48 = _y_46*upru_base_frame_xx + _y_47*upru_base_frame_xy +
-            _y_48*upru_base_frame_xz;
-        /* (upru-N51) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real d0_c_m_t = c_4*d0_G_m_t;
-        const real d0_c_m_t_2 = d0_G_m_t*s_4;
-        const real d0_c_m_t_3 = c_4*d0_c_m_t;
-        const real d0_c_m_t_4 = d0_c_m_t*s_4;
-        const real d0_c_m_t_5 = c_4*d0_c_m_t_2;
-        const real d0_c_m_t_6 = d0_c_m_t_2*s_4;
-        const real _x_49 = J_4_xx*c_2 - d0_Gamma_1_t_2;
-        const real d0_c_m_t_7 = c_2*d0_mu_4_t_6;
-        const real _y_50 = -d0_Gamma_1_t - d0_c_m_t_7;
-        const real _x_50 = d0_c_m_t_3*s_2 - d0_c_m_t_7;
-        const real _y_51 = d0_Gamma_1_t_2 + c_2*d0_c_m_t_3;
-        const real d0_c_m_t_8 = c_2*d0_mu_4_t_7;
-        const real _x_51 = d0_c_m_t_4*s_2 - d0_c_m_t_8;
-        const real _y_52 = d0_Gamma_1_t_3 + c_2*d0_c_m_t_4;
-        const real _x_52 = -_x_49*c_2 - _x_50*s_2;
-        const real _y_53 = _x_49*s_2 - _x_50*c_2;
-        const real _x_53 = -_y_50*c_2 - _y_51*s_2;
-        const real _y_54 = _y_50*s_2 - _y_51*c_2;
-        const real _x_54 = d0_c_m_t_5*s_2 - d0_c_m_t_8;
-        const real _y_55 = d0_Gamma_1_t_3 + c_2*d0_c_m_t_5;
-        const real _x_55 = c_1*d0_c_m_t_6 - _x_51*s_1;
-        const real _y_56 = -_x_51*c_1 - d0_c_m_t_6*s_1;
-        const real _x_56 = -_x_52*s_1 - _x_54*c_1;
-        const real _y_57 = _x_54*s_1 - _x_52*c_1;
-        const real _x_57 = -_y_53*s_1 - _y_55*c_1;
-        const real _y_58 = _y_55*s_1 - _y_53*c_1;
-        const real _x_58 = -_x_55*c_1 - _x_56*s_1;
-        const real _y_59 = _x_55*s_1 - _x_56*c_1;
-        const real _x_59 = -_y_56*c_1 - _y_57*s_1;
-        const real _y_60 = _y_56*s_1 - _y_57*c_1;
-        const real _x_60 = -_x_53*s_1 - _y_52*c_1;
-        const real _y_61 = _y_52*s_1 - _x_53*c_1;
-        const real _x_61 = _x_58*upru_base_frame_xx + _x_59*upru_base_frame_xy +
-            _x_60*upru_base_frame_xz;
-        const real _y_62 = _x_58*upru_base_frame_yx + _x_59*upru_base_frame_yy +
-            _x_60*upru_base_frame_yz;
-        const real _x_62 = _y_59*upru_base_frame_xx + _y_60*upru_base_frame_xy +
-            _y_61*upru_base_frame_xz;
-        const real _y_63 = _y_59*upru_base_frame_yx + _y_60*upru_base_frame_yy +
-            _y_61*upru_base_frame_yz;
-        const real _x_63 = _x_57*upru_base_frame_xx + _y_54*upru_base_frame_xz +
-            _y_58*upru_base_frame_xy;
-        const real _y_64 = _x_57*upru_base_frame_yx + _y_54*upru_base_frame_yz +
-            _y_58*upru_base_frame_yy;
-        const real _z_11 = upru_base_frame_zx*(_x_58*upru_base_frame_zx + _x_59*upru_base_frame_zy
-            + _x_60*upru_base_frame_zz) + upru_base_frame_zy*(_y_59*upru_base_frame_zx +
-            _y_60*upru_base_frame_zy + _y_61*upru_base_frame_zz) +
-            upru_base_frame_zz*(_x_57*upru_base_frame_zx + _y_54*upru_base_frame_zz +
-            _y_58*upru_base_frame_zy);
+        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
+        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
+        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
+        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
+        /* (upru-N46) coefficient of the acceleration in: moment along moment direction 1 that balances
+           the leg's inertia and weight along all freedoms */
+        const real d0_G_m1_in_base_y = axis_x_upru_axes4_y*d0_G_m1_t - axis_z_y*d_Gamma_4_t;
+        const real d0_G_m1_in_base_z = axis_x_upru_axes4_z*d0_G_m1_t - axis_z_z*d_Gamma_4_t;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + _x_29*q_in_base_y + _x_61*upru_base_frame_xx +
-            _x_62*upru_base_frame_xy + _x_63*upru_base_frame_xz + _z_10*q_in_base_y -
-            M_ta_t_9*q_in_base_y - _x_28*q_in_base_z - _y_49*q_in_base_z;
-        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + _y_30*q_in_base_z + _z_10*q_in_base_x -
-            M_ta_t_10*q_in_base_y - _x_47*q_in_base_z - _x_61*upru_base_frame_yx -
-            _x_62*upru_base_frame_yy - _x_63*upru_base_frame_yz - _y_31*q_in_base_y;
-        const real M_aa_t_3 = _x_47*q_in_base_y + _z_5*q_in_base_z - M_ta_t_11*q_in_base_y -
-            M_ta_t_8*q_in_base_z - _x_61*upru_base_frame_zx - _x_62*upru_base_frame_zy -
-            _x_63*upru_base_frame_zz - _y_49*q_in_base_x - _z_6*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + _x_48*q_in_base_z + _y_29*q_in_base_z +
-            _y_62*upru_base_frame_yx + _y_63*upru_base_frame_yy + _y_64*upru_base_frame_yz -
-            M_ta_t_10*q_in_base_x - _y_31*q_in_base_x - q_in_base_x*(_y_46*upru_base_frame_zx +
-            _y_47*upru_base_frame_zy + _y_48*upru_base_frame_zz);
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + _x_48*q_in_base_y +
-            _z_6*q_in_base_x - _y_62*upru_base_frame_zx - _y_63*upru_base_frame_zy -
-            _y_64*upru_base_frame_zz - _z_4*q_in_base_z - q_in_base_x*(_y_46*upru_base_frame_yx +
-            _y_47*upru_base_frame_yy + _y_48*upru_base_frame_yz);
-        const real M_aa_t_6 = _z_11 + M_ta_t_4*q_in_base_y + _z_5*q_in_base_x +
-            q_in_base_x*(_z_7*upru_base_frame_yx + _z_8*upru_base_frame_yy +
-            _z_9*upru_base_frame_yz) - M_ta_t_8*q_in_base_x - _z_4*q_in_base_y -
-            q_in_base_y*(_z_7*upru_base_frame_xx + _z_8*upru_base_frame_xy +
-            _z_9*upru_base_frame_xz);
-        o->sum[0][k] = Q_t_12;  /* total_upru_xx */
-        o->sum[1][k] = Q_t_13;  /* total_upru_xy */
-        o->sum[2][k] = Q_t_14;  /* total_upru_xz */
-        o->sum[3][k] = Q_t_16;  /* total_upru_yy */
-        o->sum[4][k] = Q_t_17;  /* total_upru_yz */
-        o->sum[5][k] = Q_t_19;  /* total_upru_zz */
+        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_4*q_in_base_y +
+            d_G_m_xy*q_in_base_z - M_ta_t_9*q_in_base_y - d0_c_in_base_x_3*q_in_base_z -
+            d_G_m_xz*q_in_base_y - n_m1_in_base_x*(axis_x_upru_axes4_x*d0_G_m1_t -
+            axis_z_x*d_Gamma_4_t);
+        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x +
+            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
+            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
+        const real M_aa_t_3 = d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z +
+            d_G_m_xy*q_in_base_x - M_ta_t_11*q_in_base_y - M_ta_t_8*q_in_base_z -
+            d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
+        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_c_in_base_y_3*q_in_base_z +
+            d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x - M_ta_t_10*q_in_base_x -
+            d0_G_m1_in_base_y*n_m1_in_base_y - d0_c_in_base_y_5*q_in_base_x -
+            d_G_m_yx*q_in_base_z;
+        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
+            d0_G_m1_in_base_z*n_m1_in_base_y + d0_c_in_base_z_5*q_in_base_x +
+            d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x - d0_c_in_base_z_3*q_in_base_z -
+            d_G_m_yx*q_in_base_y;
+        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_c_in_base_z_4*q_in_base_x +
+            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y - M_ta_t_8*q_in_base_x -
+            d0_G_m1_in_base_z*n_m1_in_base_z - d0_c_in_base_z_3*q_in_base_y -
+            d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x;
+        o->sum[0][k] = Q_t_10;  /* total_upru_xx */
+        o->sum[1][k] = Q_t_11;  /* total_upru_xy */
+        o->sum[2][k] = Q_t_12;  /* total_upru_xz */
+        o->sum[3][k] = Q_t_14;  /* total_upru_yy */
+        o->sum[4][k] = Q_t_15;  /* total_upru_yz */
+        o->sum[5][k] = Q_t_17;  /* total_upru_zz */
         o->sum[6][k] = M_ta_t_12;  /* total_upru_xx_2 */
         o->sum[7][k] = M_ta_t_13;  /* total_upru_xy_2 */
         o->sum[8][k] = M_ta_t_14;  /* total_upru_xz_2 */
@@ -2573,7 +2230,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 36, w, code, M);
 }
 
-/* ---- Z: 2085 mul, 1506 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 2079 mul, 1506 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -2885,8 +2542,6 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
         const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
         /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
@@ -2900,6 +2555,11 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upru-V19) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = omega_x*(axis_x_upru_axes4_x*end_p1_r3_x - axis_z_x*end_p1_r5_x) +
+            omega_y*(axis_x_upru_axes4_y*end_p1_r3_x - axis_z_y*end_p1_r5_x) +
+            omega_z*(axis_x_upru_axes4_z*end_p1_r3_x - axis_z_z*end_p1_r5_x);
+        /* (upru-V1) velocity of the connection point */
         const real S_dot_r0_x = S_dot_x*upru_base_frame_xx + S_dot_y*upru_base_frame_yx +
             S_dot_z*upru_base_frame_zx;
         const real S_dot_r0_y = S_dot_x*upru_base_frame_xy + S_dot_y*upru_base_frame_yy +
@@ -2908,30 +2568,27 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
             S_dot_z*upru_base_frame_zz;
         const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
         const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V19) rate of joint 1 */
+        /* (upru-V20) rate of joint 1 */
         const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
         const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V23) angular velocity of link 1 */
+        const real qd_1_t_3 = inv_end_p1_r5_x*(eta_1 + qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
+        /* (upru-V24) angular velocity of link 1 */
         const real omega_1_t = qd_1_t*s_2;
         const real omega_1_t_2 = c_2*qd_1_t;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_x = omega_1_t_2*qd_1_t_2;
         const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V22) rate of joint 4 */
-        const real qd_4_t = omega_x*(axis_z_x - axis_x_upru_axes4_x*o_4_x) + omega_y*(axis_z_y -
-            axis_x_upru_axes4_y*o_4_x) + omega_z*(axis_z_z - axis_x_upru_axes4_z*o_4_x);
-        const real qd_4 = qd_4_t - inv_end_p1_r5_x*(qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 2 */
+        /* (upru-V25) angular velocity of link 2 */
         const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
         const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
         /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_4;
+        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_t = c_4*zeta_2_y;
         /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = zeta_4_x - zeta_2_t;
-        /* (upru-V26) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_4;
+        const real beta_4_x = -zeta_2_t - zeta_4_x;
+        /* (upru-V27) angular velocity of link 4 */
+        const real omega_4_z = omega_1_t - qd_1_t_3;
         /* (upru-A10) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
             axis_x_upru_axes4_z*omega_z;
@@ -2948,19 +2605,18 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
             omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
             end_p1_r5_x*omega_2_r1_x);
         const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-V25) centripetal tensor of link 2 */
+        /* (upru-V26) centripetal tensor of link 2 */
         const real W_2_t = omega_1_t*omega_1_t;
         const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
         const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
         const real W_2_xy = omega_1_t*omega_1_t_2;
+        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
+        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
+        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
         /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_x*omega_2_r1_x;
-        const real bias_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real bias_t_3 = 2*S_dot_r3_x;
-        const real bias_x = bias_t_3*omega_2_r1_y + omega_1_t*omega_2_r1_x*root_2 +
-            root_2*s_4*zeta_2_y;
-        const real bias_y = root_2*zeta_2_t + omega_1_t*omega_2_r1_y*root_2 -
-            bias_t_3*omega_2_r1_x;
+        const real bias_t = 2*S_dot_r3_x;
+        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
+        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
         /* (upru-A1) centripetal acceleration of the connection point */
         const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
@@ -2973,21 +2629,21 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
            the joint accelerations */
         const real rel_o_x = u_1_tip_x - bias_x;
         const real rel_o_y = u_1_tip_y - bias_y;
-        /* (upru-A13) remainder without the acceleration in: acceleration of joint 1 */
+        /* (upru-A14) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o_t = inv_v_1_r0_y*(c_4*rel_o_y + rel_o_x*s_4);
         const real qdd_1_o_t_2 = inv_root_2*(qdd_1_o_t*v_1_r0_x + rel_o_y*s_4 - c_4*rel_o_x);
-        /* (upru-A22) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (upru-A21) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o_t*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o_t;
-        /* (upru-A26) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (upru-A23) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upru-A28) acceleration tensor of link 2 */
+        /* (upru-A25) acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_1_o_t_2 - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_1_o_t_2;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upru-N24) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (upru-N30) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_x = B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
@@ -3000,39 +2656,36 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real acc_4_o_x = u_1_tip_x - c_4*g_r3_y - g_r1_x*s_4;
         const real acc_4_o_y = u_1_tip_y + g_r3_y*s_4 - c_4*g_r1_x;
         const real acc_4_o_z = axis_z_x*u_1_x + axis_z_y*u_1_y + axis_z_z*u_1_z - g_r3_x;
-        /* (upru-A18) remainder without the acceleration in: acceleration of joint 4 */
-        const real qdd_4_o = -inv_end_p1_r5_x*nu_1 - inv_end_p1_r5_x*(n_m1_t*qdd_1_o_t_2 +
+        /* (upru-A29) remainder without the acceleration in: angular acceleration of link 4 */
+        const real alpha_4_o_x = alpha_2_o_y*c_4 - zeta_4_x - qdd_1_o_t_2*s_4;
+        const real alpha_4_o_y = omega_2_r1_x*qd_1_t_3 - alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2;
+        const real alpha_4_o_z = alpha_2_o_x - inv_end_p1_r5_x*(nu_1 + n_m1_t*qdd_1_o_t_2 +
             qdd_1_o_t*w_1_t_2);
-        /* (upru-A32) remainder without the acceleration in: angular acceleration of link 4 */
-        const real alpha_4_o_x = zeta_4_x + alpha_2_o_y*c_4 - qdd_1_o_t_2*s_4;
-        const real alpha_4_o_y = -alpha_2_o_y*s_4 - c_4*qdd_1_o_t_2 - omega_2_r1_x*qd_4;
-        const real alpha_4_o_z = alpha_2_o_x + qdd_4_o;
-        /* (upru-V27) centripetal tensor of link 4 */
+        /* (upru-V28) centripetal tensor of link 4 */
         const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xy = omega_2_r1_x*omega_2_r1_y;
         const real W_4_xz = omega_2_r1_x*omega_4_z;
         const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A34) acceleration tensor of link 4 */
-        const real B_4_o_xy = W_4_xy - alpha_4_o_z;
+        /* (upru-A31) acceleration tensor of link 4 */
+        const real B_4_o_xy = W_2_xy_2 - alpha_4_o_z;
         const real B_4_o_xz = W_4_xz + alpha_4_o_y;
-        const real B_4_o_yx = W_4_xy + alpha_4_o_z;
+        const real B_4_o_yx = W_2_xy_2 + alpha_4_o_z;
         const real B_4_o_yz = W_4_yz - alpha_4_o_x;
         const real B_4_o_zx = W_4_xz - alpha_4_o_y;
         const real B_4_o_zy = W_4_yz + alpha_4_o_x;
-        /* (upru-N14) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (upru-N22) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
-        const real mu_4_o_x = B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + acc_4_o_z*h_4_z -
-            B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - J_4_xz*(W_4_t - bias_t_2) - acc_4_o_y*h_4_x;
-        const real mu_4_o_y = B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + J_4_xy*(W_4_t - bias_t) +
-            acc_4_o_x*h_4_x - B_4_o_xy*J_4_xz - B_4_o_zx*Sigma_4_xx - acc_4_o_z*h_4_y;
-        const real mu_4_o_z = B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(bias_t - bias_t_2) +
+        const real mu_4_o_x = B_4_o_yx*J_4_xy + B_4_o_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
+            acc_4_o_z*h_4_z - B_4_o_yz*Sigma_4_zz - B_4_o_zx*J_4_yz - acc_4_o_y*h_4_x;
+        const real mu_4_o_y = B_4_o_xz*Sigma_4_zz + B_4_o_zy*J_4_yz + acc_4_o_x*h_4_x -
+            B_4_o_xy*J_4_xz - B_4_o_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_o_z*h_4_y;
+        const real mu_4_o_z = B_4_o_xz*J_4_xz + B_4_o_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
             acc_4_o_y*h_4_y - B_4_o_xy*Sigma_4_yy - B_4_o_yz*J_4_xy - acc_4_o_x*h_4_z;
-        /* (upru-N28) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (upru-N32) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_o_x = mu_2_o_x + mu_4_o_z;
         const real N_2_o_y = mu_2_o_y + c_4*mu_4_o_x - mu_4_o_y*s_4;
         const real N_2_o_z = mu_2_o_z + c_4*mu_4_o_y + mu_4_o_x*s_4;
-        /* (upru-N40) remainder without the acceleration in: force at the connection point that balances
+        /* (upru-N44) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_end_p1_r5_x*mu_4_o_z;
         const real G_o_t_2 = inv_root_2*(N_2_o_z + G_o_t*n_m1_t);
@@ -3040,30 +2693,30 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
             N_2_o_x*s_2);
         /* (upru-N8) remainder without the acceleration in: inertia force of link 4 from its turning about
            its reference point */
-        const real phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(bias_t + bias_t_2);
-        /* (upru-N48) remainder without the acceleration in: leg force on the platform without actuation
+        const real phi_4_o_z = B_4_o_zx*h_4_y + B_4_o_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5);
+        /* (upru-N56) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_o_x = G_o_t_3*s_4 + h_4_y*(W_4_t + bias_t_2) - B_4_o_xy*h_4_z -
-            B_4_o_xz*h_4_x - G_o_t_2*c_4;
-        const real c_o_y = G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_4_t + bias_t) - B_4_o_yx*h_4_y -
+        const real c_o_x = G_o_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_o_xy*h_4_z - B_4_o_xz*h_4_x
+            - G_o_t_2*c_4;
+        const real c_o_y = G_o_t_2*s_4 + G_o_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_o_yx*h_4_y -
             B_4_o_yz*h_4_x;
-        /* (upru-N54) velocity and gravity terms of the leg force */
+        /* (upru-N62) velocity and gravity terms of the leg force */
         const real U_in_base_x = axis_z_x*phi_4_o_z - axis_x_upru_axes4_x*c_o_x -
             axis_y_upru_axes4_in_base_x*c_o_y;
         const real U_in_base_y = axis_z_y*phi_4_o_z - axis_x_upru_axes4_y*c_o_x -
             axis_y_upru_axes4_in_base_y*c_o_y;
         const real U_in_base_z = axis_z_z*phi_4_o_z - axis_x_upru_axes4_z*c_o_x -
             axis_y_upru_axes4_in_base_z*c_o_y;
-        /* (upru-N44) remainder without the acceleration in: moment at the connection point that balances
+        /* (upru-N52) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_t = mu_4_o_z*o_4_x;
+        const real G_m_o_x = G_o_t*end_p1_r3_x;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_z*q_in_base_y + axis_z_x*mu_4_o_z -
-            G_m_o_t*axis_x_upru_axes4_x - U_in_base_y*q_in_base_z;
+            G_m_o_x*axis_x_upru_axes4_x - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z + axis_z_y*mu_4_o_z -
-            G_m_o_t*axis_x_upru_axes4_y - U_in_base_z*q_in_base_x;
+            G_m_o_x*axis_x_upru_axes4_y - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x + axis_z_z*mu_4_o_z -
-            G_m_o_t*axis_x_upru_axes4_z - U_in_base_x*q_in_base_y;
+            G_m_o_x*axis_x_upru_axes4_z - U_in_base_x*q_in_base_y;
         o->sum[0][k] = U_in_base_x;  /* total_upru_x */
         o->sum[1][k] = U_in_base_y;  /* total_upru_y */
         o->sum[2][k] = U_in_base_z;  /* total_upru_z */
@@ -3346,7 +2999,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- required: 2229 mul, 1647 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 2205 mul, 1641 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3701,8 +3354,6 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
         const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
         /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
@@ -3724,33 +3375,20 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
             S_dot_z*upru_base_frame_zz;
         const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
         const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V19) rate of joint 1 */
+        /* (upru-V20) rate of joint 1 */
         const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
         const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V23) angular velocity of link 1 */
+        /* (upru-V24) angular velocity of link 1 */
         const real omega_1_t = qd_1_t*s_2;
         const real omega_1_t_2 = c_2*qd_1_t;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_x = omega_1_t_2*qd_1_t_2;
         const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_in_base_x = axis_z_x - axis_x_upru_axes4_x*o_4_x;
-        const real o_4_in_base_y = axis_z_y - axis_x_upru_axes4_y*o_4_x;
-        const real o_4_in_base_z = axis_z_z - axis_x_upru_axes4_z*o_4_x;
-        /* (upru-V22) rate of joint 4 */
-        const real qd_4_t = o_4_in_base_x*omega_x + o_4_in_base_y*omega_y + o_4_in_base_z*omega_z;
-        const real qd_4 = qd_4_t - inv_end_p1_r5_x*(qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 2 */
+        /* (upru-V25) angular velocity of link 2 */
         const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
         const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_4;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = zeta_4_x - zeta_2_t;
-        /* (upru-V26) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_4;
         /* (upru-A10) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
             axis_x_upru_axes4_z*omega_z;
@@ -3759,6 +3397,32 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
         const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
             end_p1_r5_y*omega_2_r1_x;
+        /* (upru-V26) centripetal tensor of link 2 */
+        const real W_2_t = omega_1_t*omega_1_t;
+        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
+        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
+        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
+        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
+        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_r3_x;
+        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
+        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
+        /* (upru-V20) rate of joint 1 */
+        const real qd_1_t_3 = omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x +
+            qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
+        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
+        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
+        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
+        const real beta_4_x = zeta_4_x - zeta_2_t;
+        /* (upru-V27) angular velocity of link 4 */
+        const real omega_4_z = omega_1_t + qd_1_t_3;
+        /* (upru-A10) rate of moment direction 1 */
         const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
             end_p1_r5_y*omega_4_z;
         /* (upru-A11) bias of the angular acceleration along moment direction 1 */
@@ -3767,28 +3431,11 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
             omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
             end_p1_r5_x*omega_2_r1_x);
         const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-V25) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_x*omega_2_r1_x;
-        const real bias_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real bias_t_3 = 2*S_dot_r3_x;
-        const real bias_x = bias_t_3*omega_2_r1_y + omega_1_t*omega_2_r1_x*root_2 +
-            root_2*s_4*zeta_2_y;
-        const real bias_y = root_2*zeta_2_t + omega_1_t*omega_2_r1_y*root_2 -
-            bias_t_3*omega_2_r1_x;
-        /* (upru-V27) centripetal tensor of link 4 */
-        const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xy = omega_2_r1_x*omega_2_r1_y;
-        const real W_4_xz = omega_2_r1_x*omega_4_z;
-        const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
+        /* (upru-A12) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x +
+            alpha_y*axis_x_upru_axes4_y + alpha_z*axis_x_upru_axes4_z) -
+            end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y + alpha_z*axis_z_z);
+        const real etad_1 = etad_1_t + nu_1;
         /* (upru-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -3804,14 +3451,9 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
         /* (upru-A8) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_tip_x - bias_x;
         const real rel_y = S_ddot_tip_y - bias_y;
-        /* (upru-A12) acceleration of joint 1 */
+        /* (upru-A13) acceleration of joint 1 */
         const real qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4);
         const real qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x);
-        /* (upru-A17) acceleration of joint 4 */
-        const real qdd_4_t = alpha_x*o_4_in_base_x + alpha_y*o_4_in_base_y +
-            alpha_z*o_4_in_base_z;
-        const real qdd_4 = qdd_4_t - inv_end_p1_r5_x*nu_1 - inv_end_p1_r5_x*(n_m1_t*qdd_1_t_2 +
-            qdd_1_t*w_1_t_2);
         /* (upru-N3) acceleration of the reference point of link 4, less gravity */
         const real acc_4_x = S_ddot_tip_x - axis_x_upru_axes4_x*gravity_x -
             axis_x_upru_axes4_y*gravity_y - axis_x_upru_axes4_z*gravity_z;
@@ -3819,64 +3461,69 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
             axis_y_upru_axes4_in_base_y*gravity_y - axis_y_upru_axes4_in_base_z*gravity_z;
         const real acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z -
             axis_z_x*gravity_x - axis_z_y*gravity_y - axis_z_z*gravity_z;
-        /* (upru-A19) angular acceleration of link 1 */
+        /* (upru-A20) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1_t*s_2;
         const real alpha_1_t_2 = c_2*qdd_1_t;
-        /* (upru-A23) angular acceleration of link 2 */
+        /* (upru-A22) angular acceleration of link 2 */
         const real alpha_2_x = alpha_1_t - zeta_2_x;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upru-A27) acceleration tensor of link 2 */
+        /* (upru-A24) acceleration tensor of link 2 */
         const real B_2_xy = qdd_1_t_2 - W_2_xy;
         const real B_2_yx = -W_2_xy - qdd_1_t_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upru-N21) inertia moment of the links that turn with link 2, about their reference points */
+        /* (upru-N29) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_x = B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
         const real mu_2_y = B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz -
             J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y;
         const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 -
             B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upru-A29) angular acceleration of link 4 */
+        /* (upru-A26) angular acceleration of link 4 */
         const real alpha_4_x = zeta_4_x + alpha_2_y*c_4 - qdd_1_t_2*s_4;
-        const real alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_4;
-        const real alpha_4_z = alpha_2_x + qdd_4;
-        /* (upru-A33) acceleration tensor of link 4 */
-        const real B_4_xy = W_4_xy - alpha_4_z;
+        const real alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_1_t_3;
+        const real alpha_4_z = alpha_2_x - inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 +
+            qdd_1_t*w_1_t_2);
+        /* (upru-V28) centripetal tensor of link 4 */
+        const real W_4_t = omega_4_z*omega_4_z;
+        const real W_4_xz = omega_2_r1_x*omega_4_z;
+        const real W_4_yz = omega_2_r1_y*omega_4_z;
+        /* (upru-A30) acceleration tensor of link 4 */
+        const real B_4_xy = W_2_xy_2 - alpha_4_z;
         const real B_4_xz = W_4_xz + alpha_4_y;
-        const real B_4_yx = W_4_xy + alpha_4_z;
+        const real B_4_yx = W_2_xy_2 + alpha_4_z;
         const real B_4_yz = W_4_yz - alpha_4_x;
         const real B_4_zx = W_4_xz - alpha_4_y;
         const real B_4_zy = W_4_yz + alpha_4_x;
-        /* (upru-N11) inertia moment of the links that turn with link 4, about their reference points */
-        const real mu_4_x = B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + acc_4_z*h_4_z - B_4_yz*Sigma_4_zz
-            - B_4_zx*J_4_yz - J_4_xz*(W_4_t - bias_t_2) - acc_4_y*h_4_x;
-        const real mu_4_y = B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + J_4_xy*(W_4_t - bias_t) +
-            acc_4_x*h_4_x - B_4_xy*J_4_xz - B_4_zx*Sigma_4_xx - acc_4_z*h_4_y;
-        const real mu_4_z = B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(bias_t - bias_t_2) +
+        /* (upru-N21) inertia moment of the links that turn with link 4, about their reference points */
+        const real mu_4_x = B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
+            acc_4_z*h_4_z - B_4_yz*Sigma_4_zz - B_4_zx*J_4_yz - acc_4_y*h_4_x;
+        const real mu_4_y = B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + acc_4_x*h_4_x - B_4_xy*J_4_xz -
+            B_4_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_z*h_4_y;
+        const real mu_4_z = B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
             acc_4_y*h_4_y - B_4_xy*Sigma_4_yy - B_4_yz*J_4_xy - acc_4_x*h_4_z;
-        /* (upru-N25) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (upru-N31) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_x = mu_2_x + mu_4_z;
         const real N_2_y = mu_2_y + c_4*mu_4_x - mu_4_y*s_4;
         const real N_2_z = mu_2_z + c_4*mu_4_y + mu_4_x*s_4;
-        /* (upru-N37) force at the connection point that balances the leg's inertia and weight along all
+        /* (upru-N41) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_end_p1_r5_x*mu_4_z;
         const real G_t_2 = inv_root_2*(N_2_z + G_t*n_m1_t);
         const real G_t_3 = inv_v_1_r0_y*(G_t*w_1_t_2 + G_t_2*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2);
         /* (upru-N5) inertia force of link 4 from its turning about its reference point */
-        const real phi_4_z = B_4_zx*h_4_y + B_4_zy*h_4_z - h_4_x*(bias_t + bias_t_2);
-        /* (upru-N45) leg force on the platform without actuation and without the mass at the connection
+        const real phi_4_z = B_4_zx*h_4_y + B_4_zy*h_4_z - h_4_x*(W_2_t_4 + W_2_t_5);
+        /* (upru-N53) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = G_t_3*s_4 + h_4_y*(W_4_t + bias_t_2) - B_4_xy*h_4_z - B_4_xz*h_4_x -
+        const real c_x = G_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_xy*h_4_z - B_4_xz*h_4_x -
             G_t_2*c_4;
-        const real c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_4_t + bias_t) - B_4_yx*h_4_y -
+        const real c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_yx*h_4_y -
             B_4_yz*h_4_x;
-        /* (upru-N41) moment at the connection point that balances the leg's inertia and weight along all
+        /* (upru-N49) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_t = mu_4_z*o_4_x;
-        /* (upru-N45) leg force on the platform without actuation and without the mass at the connection
+        const real G_m_x = G_t*end_p1_r3_x;
+        /* (upru-N53) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_in_base_x = axis_x_upru_axes4_x*c_x + axis_y_upru_axes4_in_base_x*c_y -
             axis_z_x*phi_4_z;
@@ -3885,11 +3532,11 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real c_in_base_z = axis_x_upru_axes4_z*c_x + axis_y_upru_axes4_in_base_z*c_y -
             axis_z_z*phi_4_z;
         /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = G_m_t*axis_x_upru_axes4_x + c_in_base_z*q_in_base_y - axis_z_x*mu_4_z -
+        const real R_a_t = G_m_x*axis_x_upru_axes4_x + c_in_base_z*q_in_base_y - axis_z_x*mu_4_z -
             c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = G_m_t*axis_x_upru_axes4_y + c_in_base_x*q_in_base_z - axis_z_y*mu_4_z
+        const real R_a_t_2 = G_m_x*axis_x_upru_axes4_y + c_in_base_x*q_in_base_z - axis_z_y*mu_4_z
             - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = G_m_t*axis_x_upru_axes4_z + c_in_base_y*q_in_base_x - axis_z_z*mu_4_z
+        const real R_a_t_3 = G_m_x*axis_x_upru_axes4_z + c_in_base_y*q_in_base_x - axis_z_z*mu_4_z
             - c_in_base_x*q_in_base_y;
         o->sum[0][k] = c_in_base_x;  /* total_upru_x */
         o->sum[1][k] = c_in_base_y;  /* total_upru_y */
@@ -4209,7 +3856,7 @@ INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, r
     deliver(q_of, 24, w, code, q);
 }
 
-/* ---- joint_rates: 882 mul, 528 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates: 876 mul, 528 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4433,10 +4080,6 @@ INLINE void joint_rates_legs_upru(const prepared *m, size_t leg, size_t legs, co
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
-        /* (upru-V13) force part of reciprocal wrench 4 */
-        const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
         /* (upru-V1) velocity of the connection point */
         const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -4449,21 +4092,23 @@ INLINE void joint_rates_legs_upru(const prepared *m, size_t leg, size_t legs, co
             S_dot_z*upru_base_frame_zz;
         const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
         const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V19) rate of joint 1 */
+        /* (upru-V20) rate of joint 1 */
         const real qd_1_t = (S_dot_r0_y*s_1 - S_dot_r0_x*c_1)/v_1_r0_y;
         const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*(c_4*v_1_t_3 -
             s_4*v_1_t_4));
-        /* (upru-V22) rate of joint 4 */
-        const real qd_4_t = omega_x*(axis_z_x - o_4_x*(axis_y_upru_axes4_in_base_y*axis_z_z -
-            axis_y_upru_axes4_in_base_z*axis_z_y)) + omega_y*(axis_z_y -
-            o_4_x*(axis_y_upru_axes4_in_base_z*axis_z_x - axis_y_upru_axes4_in_base_x*axis_z_z)) +
-            omega_z*(axis_z_z - o_4_x*(axis_y_upru_axes4_in_base_x*axis_z_y -
+        /* (upru-A10) rate of moment direction 1 */
+        const real nd_m1_t = end_p1_r3_x*(omega_x*(axis_y_upru_axes4_in_base_y*axis_z_z -
+            axis_y_upru_axes4_in_base_z*axis_z_y) + omega_y*(axis_y_upru_axes4_in_base_z*axis_z_x
+            - axis_y_upru_axes4_in_base_x*axis_z_z) +
+            omega_z*(axis_y_upru_axes4_in_base_x*axis_z_y -
             axis_y_upru_axes4_in_base_y*axis_z_x));
-        const real qd_4 = qd_4_t - inv_end_p1_r5_x*(qd_1_t*w_1_t_2 - end_p1_r3_x*qd_1_t_2*s_4);
+        /* (upru-V20) rate of joint 1 */
+        const real qd_1_t_3 = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z - (nd_m1_t +
+            qd_1_t*w_1_t_2 - end_p1_r3_x*qd_1_t_2*s_4)/end_p1_r5_x;
         o->entry[0][k] = qd_1_t;
         o->entry[1][k] = qd_1_t_2;
         o->entry[2][k] = S_dot_r3_x;
-        o->entry[3][k] = qd_4;
+        o->entry[3][k] = qd_1_t_3;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(rho2_4) >
             TOLERANCE*TOLERANCE*1) + unless(magnitude(-end_p1_r5_x) > TOLERANCE*size_) +
@@ -4517,7 +4162,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 24, w, code, rates);
 }
 
-/* ---- joint_accelerations: 1380 mul, 870 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 1356 mul, 864 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4783,8 +4428,6 @@ INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t 
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
         const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
         /* (upru-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -4800,30 +4443,19 @@ INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t 
             S_dot_z*upru_base_frame_zz;
         const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
         const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V19) rate of joint 1 */
+        /* (upru-V20) rate of joint 1 */
         const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
         const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V23) angular velocity of link 1 */
+        /* (upru-V24) angular velocity of link 1 */
         const real omega_1_t = qd_1_t*s_2;
         const real omega_1_t_2 = c_2*qd_1_t;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_in_base_x = axis_z_x - axis_x_upru_axes4_x*o_4_x;
-        const real o_4_in_base_y = axis_z_y - axis_x_upru_axes4_y*o_4_x;
-        const real o_4_in_base_z = axis_z_z - axis_x_upru_axes4_z*o_4_x;
-        /* (upru-V22) rate of joint 4 */
-        const real qd_4_t = o_4_in_base_x*omega_x + o_4_in_base_y*omega_y + o_4_in_base_z*omega_z;
-        const real qd_4 = qd_4_t - inv_end_p1_r5_x*(qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 2 */
+        /* (upru-V25) angular velocity of link 2 */
         const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
         const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = omega_2_r1_y*qd_4 - zeta_2_t;
-        /* (upru-V26) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_4;
         /* (upru-A10) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
             axis_x_upru_axes4_z*omega_z;
@@ -4832,6 +4464,18 @@ INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t 
         const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
         const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
             end_p1_r5_y*omega_2_r1_x;
+        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_r3_x;
+        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
+        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
+        /* (upru-V20) rate of joint 1 */
+        const real qd_1_t_3 = omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x +
+            qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
+        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
+        const real beta_4_x = omega_2_r1_y*qd_1_t_3 - zeta_2_t;
+        /* (upru-V27) angular velocity of link 4 */
+        const real omega_4_z = omega_1_t + qd_1_t_3;
+        /* (upru-A10) rate of moment direction 1 */
         const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
             end_p1_r5_y*omega_4_z;
         /* (upru-A11) bias of the angular acceleration along moment direction 1 */
@@ -4840,11 +4484,11 @@ INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t 
             omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
             end_p1_r5_x*omega_2_r1_x);
         const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_r3_x;
-        const real bias_x = bias_t*omega_2_r1_y + omega_1_t*omega_2_r1_x*root_2 +
-            root_2*s_4*zeta_2_y;
-        const real bias_y = root_2*zeta_2_t + omega_1_t*omega_2_r1_y*root_2 - bias_t*omega_2_r1_x;
+        /* (upru-A12) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x +
+            alpha_y*axis_x_upru_axes4_y + alpha_z*axis_x_upru_axes4_z) -
+            end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y + alpha_z*axis_z_z);
+        const real etad_1 = etad_1_t + nu_1;
         /* (upru-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -4860,18 +4504,14 @@ INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t 
             S_ddot_y*axis_y_upru_axes4_in_base_y + S_ddot_z*axis_y_upru_axes4_in_base_z - bias_y;
         const real rel_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z +
             root_2*(omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y);
-        /* (upru-A12) acceleration of joint 1 */
+        /* (upru-A13) acceleration of joint 1 */
         const real qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4);
         const real qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x);
-        /* (upru-A17) acceleration of joint 4 */
-        const real qdd_4_t = alpha_x*o_4_in_base_x + alpha_y*o_4_in_base_y +
-            alpha_z*o_4_in_base_z;
-        const real qdd_4 = qdd_4_t - inv_end_p1_r5_x*nu_1 - inv_end_p1_r5_x*(n_m1_t*qdd_1_t_2 +
-            qdd_1_t*w_1_t_2);
+        const real qdd_1_t_3 = inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 + qdd_1_t*w_1_t_2);
         o->entry[0][k] = qdd_1_t;
         o->entry[1][k] = -qdd_1_t_2;
         o->entry[2][k] = rel_z;
-        o->entry[3][k] = qdd_4;
+        o->entry[3][k] = -qdd_1_t_3;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(rho2_4) >
             TOLERANCE*TOLERANCE*1) + unless(magnitude(-end_p1_r5_x) > TOLERANCE*size_) +
@@ -4926,7 +4566,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 24, w, code, accelerations);
 }
 
-/* ---- legs: 2082 mul, 1494 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 2058 mul, 1488 add, 30 div, 18 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -5216,8 +4856,6 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
         const real inv_end_p1_r5_x = 1/end_p1_r5_x;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_x = end_p1_r3_x*inv_end_p1_r5_x;
         /* (upru-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
@@ -5239,33 +4877,20 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
             S_dot_z*upru_base_frame_zz;
         const real S_dot_r1_y = -S_dot_r0_x*s_1 - S_dot_r0_y*c_1;
         const real S_dot_r3_x = S_dot_r0_z*s_2 - S_dot_r1_y*c_2;
-        /* (upru-V19) rate of joint 1 */
+        /* (upru-V20) rate of joint 1 */
         const real qd_1_t = inv_v_1_r0_y*(S_dot_r0_y*s_1 - S_dot_r0_x*c_1);
         const real qd_1_t_2 = inv_root_2*(-S_dot_r0_z*c_2 - S_dot_r1_y*s_2 - qd_1_t*v_1_r0_x);
-        /* (upru-V23) angular velocity of link 1 */
+        /* (upru-V24) angular velocity of link 1 */
         const real omega_1_t = qd_1_t*s_2;
         const real omega_1_t_2 = c_2*qd_1_t;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_x = omega_1_t_2*qd_1_t_2;
         const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upru-V18) moment part of reciprocal wrench 4 */
-        const real o_4_in_base_x = axis_z_x - axis_x_upru_axes4_x*o_4_x;
-        const real o_4_in_base_y = axis_z_y - axis_x_upru_axes4_y*o_4_x;
-        const real o_4_in_base_z = axis_z_z - axis_x_upru_axes4_z*o_4_x;
-        /* (upru-V22) rate of joint 4 */
-        const real qd_4_t = o_4_in_base_x*omega_x + o_4_in_base_y*omega_y + o_4_in_base_z*omega_z;
-        const real qd_4 = qd_4_t - inv_end_p1_r5_x*(qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
-        /* (upru-V24) angular velocity of link 2 */
+        /* (upru-V25) angular velocity of link 2 */
         const real omega_2_r1_x = qd_1_t_2*s_4 - c_4*omega_1_t_2;
         const real omega_2_r1_y = c_4*qd_1_t_2 + omega_1_t_2*s_4;
-        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
-        const real zeta_4_x = omega_2_r1_y*qd_4;
         /* (upru-A4) angular acceleration of link 2 from the turning of axis 2 */
         const real zeta_2_t = c_4*zeta_2_y;
-        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
-        const real beta_4_x = zeta_4_x - zeta_2_t;
-        /* (upru-V26) angular velocity of link 4 */
-        const real omega_4_z = omega_1_t + qd_4;
         /* (upru-A10) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upru_axes4_x*omega_x + axis_x_upru_axes4_y*omega_y +
             axis_x_upru_axes4_z*omega_z;
@@ -5274,6 +4899,28 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
         const real omega_tip_z = axis_z_x*omega_x + axis_z_y*omega_y + axis_z_z*omega_z;
         const real nd_m1_x = end_p1_r5_y*omega_tip_x - end_p1_r5_x*omega_tip_y -
             end_p1_r5_y*omega_2_r1_x;
+        /* (upru-V26) centripetal tensor of link 2 */
+        const real W_2_t = omega_1_t*omega_1_t;
+        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
+        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        const real W_2_t_4 = omega_2_r1_x*omega_2_r1_x;
+        const real W_2_t_5 = omega_2_r1_y*omega_2_r1_y;
+        const real W_2_xy_2 = omega_2_r1_x*omega_2_r1_y;
+        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_r3_x;
+        const real bias_x = bias_t*omega_2_r1_y + root_2*(omega_1_t*omega_2_r1_x + s_4*zeta_2_y);
+        const real bias_y = root_2*(zeta_2_t + omega_1_t*omega_2_r1_y) - bias_t*omega_2_r1_x;
+        /* (upru-V20) rate of joint 1 */
+        const real qd_1_t_3 = omega_tip_z - inv_end_p1_r5_x*(end_p1_r3_x*omega_tip_x +
+            qd_1_t*w_1_t_2 - n_m1_t*qd_1_t_2);
+        /* (upru-A5) angular acceleration of link 4 from the turning of axis 4 */
+        const real zeta_4_x = omega_2_r1_y*qd_1_t_3;
+        /* (upru-A6) angular acceleration of link 4 at zero joint accelerations */
+        const real beta_4_x = zeta_4_x - zeta_2_t;
+        /* (upru-V27) angular velocity of link 4 */
+        const real omega_4_z = omega_1_t + qd_1_t_3;
+        /* (upru-A10) rate of moment direction 1 */
         const real nd_m1_z = end_p1_r5_y*omega_tip_z - end_p1_r3_x*omega_tip_y -
             end_p1_r5_y*omega_4_z;
         /* (upru-A11) bias of the angular acceleration along moment direction 1 */
@@ -5282,24 +4929,11 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
             omega_tip_z) + (omega_2_r1_y - omega_tip_y)*(end_p1_r3_x*omega_4_z +
             end_p1_r5_x*omega_2_r1_x);
         const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upru-V25) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upru-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_x*omega_2_r1_x;
-        const real bias_t_2 = omega_2_r1_y*omega_2_r1_y;
-        const real bias_t_3 = 2*S_dot_r3_x;
-        const real bias_x = bias_t_3*omega_2_r1_y + omega_1_t*omega_2_r1_x*root_2 +
-            root_2*s_4*zeta_2_y;
-        const real bias_y = root_2*zeta_2_t + omega_1_t*omega_2_r1_y*root_2 -
-            bias_t_3*omega_2_r1_x;
-        /* (upru-V27) centripetal tensor of link 4 */
-        const real W_4_t = omega_4_z*omega_4_z;
-        const real W_4_xy = omega_2_r1_x*omega_2_r1_y;
-        const real W_4_xz = omega_2_r1_x*omega_4_z;
-        const real W_4_yz = omega_2_r1_y*omega_4_z;
+        /* (upru-A12) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_x*(alpha_x*axis_x_upru_axes4_x +
+            alpha_y*axis_x_upru_axes4_y + alpha_z*axis_x_upru_axes4_z) -
+            end_p1_r5_x*(alpha_x*axis_z_x + alpha_y*axis_z_y + alpha_z*axis_z_z);
+        const real etad_1 = etad_1_t + nu_1;
         /* (upru-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -5315,14 +4949,9 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
         /* (upru-A8) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_tip_x - bias_x;
         const real rel_y = S_ddot_tip_y - bias_y;
-        /* (upru-A12) acceleration of joint 1 */
+        /* (upru-A13) acceleration of joint 1 */
         const real qdd_1_t = inv_v_1_r0_y*(c_4*rel_y + rel_x*s_4);
         const real qdd_1_t_2 = inv_root_2*(qdd_1_t*v_1_r0_x + rel_y*s_4 - c_4*rel_x);
-        /* (upru-A17) acceleration of joint 4 */
-        const real qdd_4_t = alpha_x*o_4_in_base_x + alpha_y*o_4_in_base_y +
-            alpha_z*o_4_in_base_z;
-        const real qdd_4 = qdd_4_t - inv_end_p1_r5_x*nu_1 - inv_end_p1_r5_x*(n_m1_t*qdd_1_t_2 +
-            qdd_1_t*w_1_t_2);
         /* (upru-N3) acceleration of the reference point of link 4, less gravity */
         const real acc_4_x = S_ddot_tip_x - axis_x_upru_axes4_x*gravity_x -
             axis_x_upru_axes4_y*gravity_y - axis_x_upru_axes4_z*gravity_z;
@@ -5330,62 +4959,67 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
             axis_y_upru_axes4_in_base_y*gravity_y - axis_y_upru_axes4_in_base_z*gravity_z;
         const real acc_4_z = S_ddot_x*axis_z_x + S_ddot_y*axis_z_y + S_ddot_z*axis_z_z -
             axis_z_x*gravity_x - axis_z_y*gravity_y - axis_z_z*gravity_z;
-        /* (upru-A19) angular acceleration of link 1 */
+        /* (upru-A20) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1_t*s_2;
         const real alpha_1_t_2 = c_2*qdd_1_t;
-        /* (upru-A23) angular acceleration of link 2 */
+        /* (upru-A22) angular acceleration of link 2 */
         const real alpha_2_x = alpha_1_t - zeta_2_x;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upru-A27) acceleration tensor of link 2 */
+        /* (upru-A24) acceleration tensor of link 2 */
         const real B_2_xy = qdd_1_t_2 - W_2_xy;
         const real B_2_yx = -W_2_xy - qdd_1_t_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upru-N21) inertia moment of the links that turn with link 2, about their reference points */
+        /* (upru-N29) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_x = B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
         const real mu_2_y = B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz -
             J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y;
         const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 -
             B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upru-A29) angular acceleration of link 4 */
+        /* (upru-A26) angular acceleration of link 4 */
         const real alpha_4_x = zeta_4_x + alpha_2_y*c_4 - qdd_1_t_2*s_4;
-        const real alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_4;
-        const real alpha_4_z = alpha_2_x + qdd_4;
-        /* (upru-A33) acceleration tensor of link 4 */
-        const real B_4_xy = W_4_xy - alpha_4_z;
+        const real alpha_4_y = -alpha_2_y*s_4 - c_4*qdd_1_t_2 - omega_2_r1_x*qd_1_t_3;
+        const real alpha_4_z = alpha_2_x - inv_end_p1_r5_x*(etad_1 + n_m1_t*qdd_1_t_2 +
+            qdd_1_t*w_1_t_2);
+        /* (upru-V28) centripetal tensor of link 4 */
+        const real W_4_t = omega_4_z*omega_4_z;
+        const real W_4_xz = omega_2_r1_x*omega_4_z;
+        const real W_4_yz = omega_2_r1_y*omega_4_z;
+        /* (upru-A30) acceleration tensor of link 4 */
+        const real B_4_xy = W_2_xy_2 - alpha_4_z;
         const real B_4_xz = W_4_xz + alpha_4_y;
-        const real B_4_yx = W_4_xy + alpha_4_z;
+        const real B_4_yx = W_2_xy_2 + alpha_4_z;
         const real B_4_yz = W_4_yz - alpha_4_x;
         const real B_4_zx = W_4_xz - alpha_4_y;
         const real B_4_zy = W_4_yz + alpha_4_x;
-        /* (upru-N11) inertia moment of the links that turn with link 4, about their reference points */
-        const real mu_4_x = B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + acc_4_z*h_4_z - B_4_yz*Sigma_4_zz
-            - B_4_zx*J_4_yz - J_4_xz*(W_4_t - bias_t_2) - acc_4_y*h_4_x;
-        const real mu_4_y = B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + J_4_xy*(W_4_t - bias_t) +
-            acc_4_x*h_4_x - B_4_xy*J_4_xz - B_4_zx*Sigma_4_xx - acc_4_z*h_4_y;
-        const real mu_4_z = B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(bias_t - bias_t_2) +
+        /* (upru-N21) inertia moment of the links that turn with link 4, about their reference points */
+        const real mu_4_x = B_4_yx*J_4_xy + B_4_zy*Sigma_4_yy + J_4_xz*(W_2_t_5 - W_4_t) +
+            acc_4_z*h_4_z - B_4_yz*Sigma_4_zz - B_4_zx*J_4_yz - acc_4_y*h_4_x;
+        const real mu_4_y = B_4_xz*Sigma_4_zz + B_4_zy*J_4_yz + acc_4_x*h_4_x - B_4_xy*J_4_xz -
+            B_4_zx*Sigma_4_xx - J_4_xy*(W_2_t_4 - W_4_t) - acc_4_z*h_4_y;
+        const real mu_4_z = B_4_xz*J_4_xz + B_4_yx*Sigma_4_xx + J_4_yz*(W_2_t_4 - W_2_t_5) +
             acc_4_y*h_4_y - B_4_xy*Sigma_4_yy - B_4_yz*J_4_xy - acc_4_x*h_4_z;
-        /* (upru-N25) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (upru-N31) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_x = mu_2_x + mu_4_z;
         const real N_2_y = mu_2_y + c_4*mu_4_x - mu_4_y*s_4;
         const real N_2_z = mu_2_z + c_4*mu_4_y + mu_4_x*s_4;
-        /* (upru-N37) force at the connection point that balances the leg's inertia and weight along all
+        /* (upru-N41) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_end_p1_r5_x*mu_4_z;
         const real G_t_2 = inv_root_2*(N_2_z + G_t*n_m1_t);
         const real G_t_3 = inv_v_1_r0_y*(G_t*w_1_t_2 + G_t_2*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2);
-        /* (upru-N45) leg force on the platform without actuation and without the mass at the connection
+        /* (upru-N53) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_x = G_t_3*s_4 + h_4_y*(W_4_t + bias_t_2) - B_4_xy*h_4_z - B_4_xz*h_4_x -
+        const real c_x = G_t_3*s_4 + h_4_y*(W_2_t_5 + W_4_t) - B_4_xy*h_4_z - B_4_xz*h_4_x -
             G_t_2*c_4;
-        const real c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_4_t + bias_t) - B_4_yx*h_4_y -
+        const real c_y = G_t_2*s_4 + G_t_3*c_4 + h_4_z*(W_2_t_4 + W_4_t) - B_4_yx*h_4_y -
             B_4_yz*h_4_x;
-        /* (upru-N55) leg force on the platform without actuation, the last link's mass included */
+        /* (upru-N63) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_4_x*upru_link4_mass;
         const real c_true_y = c_y - acc_4_y*upru_link4_mass;
-        const real c_true_z = h_4_x*(bias_t + bias_t_2) - B_4_zx*h_4_y - B_4_zy*h_4_z -
+        const real c_true_z = h_4_x*(W_2_t_4 + W_2_t_5) - B_4_zx*h_4_y - B_4_zy*h_4_z -
             acc_4_z*upru_link4_mass;
         const real c_true_in_base_x = axis_x_upru_axes4_x*c_true_x +
             axis_y_upru_axes4_in_base_x*c_true_y + axis_z_x*c_true_z;
@@ -5393,13 +5027,13 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
             axis_y_upru_axes4_in_base_y*c_true_y + axis_z_y*c_true_z;
         const real c_true_in_base_z = axis_x_upru_axes4_z*c_true_x +
             axis_y_upru_axes4_in_base_z*c_true_y + axis_z_z*c_true_z;
-        /* (upru-N41) moment at the connection point that balances the leg's inertia and weight along all
+        /* (upru-N49) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_t = mu_4_z*o_4_x;
-        /* (upru-N50) moment of the leg on the platform without actuation */
-        const real c_m_in_base_x = G_m_t*axis_x_upru_axes4_x - axis_z_x*mu_4_z;
-        const real c_m_in_base_y = G_m_t*axis_x_upru_axes4_y - axis_z_y*mu_4_z;
-        const real c_m_in_base_z = G_m_t*axis_x_upru_axes4_z - axis_z_z*mu_4_z;
+        const real G_m_x = G_t*end_p1_r3_x;
+        /* (upru-N58) moment of the leg on the platform without actuation */
+        const real c_m_in_base_x = G_m_x*axis_x_upru_axes4_x - axis_z_x*mu_4_z;
+        const real c_m_in_base_y = G_m_x*axis_x_upru_axes4_y - axis_z_y*mu_4_z;
+        const real c_m_in_base_z = G_m_x*axis_x_upru_axes4_z - axis_z_z*mu_4_z;
         o->entry[0][k] = c_true_in_base_x;
         o->entry[1][k] = c_true_in_base_y;
         o->entry[2][k] = c_true_in_base_z;

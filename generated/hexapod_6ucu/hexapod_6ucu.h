@@ -89,8 +89,8 @@ typedef struct {
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
             h_star_z, m_star;
     /* legs of type upru */
-    hexapod_6ucu_real J_2_xx[6], J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_4_xx[6],
-            J_4_xy[6], J_4_xz[6], J_4_yy[6], J_4_yz[6], J_4_zz[6], Sigma_2_xx[6], Sigma_2_yy[6],
+    hexapod_6ucu_real J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_4_xx[6], J_4_xy[6],
+            J_4_xz[6], J_4_yy[6], J_4_yz[6], J_4_zz[6], Jc_2_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
             Sigma_2_zz[6], Sigma_4_xx[6], Sigma_4_yy[6], Sigma_4_zz[6], b_r0_x[6], b_r0_y[6],
             b_r0_z[6], branch_1[6], branch_2[6], branch_4[6], g_r0_x[6], g_r0_y[6], g_r0_z[6],
             h_2_x[6], h_2_y[6], h_2_z[6], h_4_x[6], h_4_y[6], h_4_z[6], size_[6], size_t_6[6],
@@ -112,13 +112,13 @@ extern const hexapod_6ucu_real hexapod_6ucu_HOME_Q[HEXAPOD_6UCU_NJ];
    model is all NaN. */
 int hexapod_6ucu_prepare(const hexapod_6ucu_params *params, hexapod_6ucu_model *model);
 
-/* Inertia matrix M. 4575 mul, 2943 add, 30 div, 18 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 2421 mul, 1629 add, 30 div, 18 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6ucu_M(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, hexapod_6ucu_real
     *M);
 size_t hexapod_6ucu_M_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 2085 mul, 1506 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 2079 mul, 1506 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6ucu_Z(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *Z);
@@ -132,7 +132,7 @@ int hexapod_6ucu_H(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, 
 size_t hexapod_6ucu_H_batch(const hexapod_6ucu_model *model, size_t n, const hexapod_6ucu_real *X,
     hexapod_6ucu_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 6009 mul, 4077 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 3819 mul, 2745 add, 30 div, 18 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6ucu_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *M, hexapod_6ucu_real *Z, hexapod_6ucu_real *H);
@@ -147,14 +147,14 @@ int hexapod_6ucu_inverse_kinematics(const hexapod_6ucu_model *model, const hexap
 size_t hexapod_6ucu_inverse_kinematics_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, hexapod_6ucu_real *q, int *status);
 
-/* Rates of all joints. 882 mul, 528 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 876 mul, 528 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int hexapod_6ucu_joint_rates(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, hexapod_6ucu_real *rates);
 size_t hexapod_6ucu_joint_rates_batch(const hexapod_6ucu_model *model, size_t n, const
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, hexapod_6ucu_real *rates, int *status);
 
-/* Accelerations of all joints. 1380 mul, 870 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 1356 mul, 864 add, 30 div, 18 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6ucu_joint_accelerations(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
     const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, hexapod_6ucu_real *accelerations);
@@ -162,7 +162,7 @@ size_t hexapod_6ucu_joint_accelerations_batch(const hexapod_6ucu_model *model, s
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
     hexapod_6ucu_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 2229 mul, 1647 add, 30 div, 18 sqrt, 0
+/* Actuator forces tau for the acceleration A, by Eq. 3. 2205 mul, 1641 add, 30 div, 18 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6ucu_inverse_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -172,7 +172,7 @@ size_t hexapod_6ucu_inverse_dynamics_batch(const hexapod_6ucu_model *model, size
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const
     hexapod_6ucu_real *wrench, hexapod_6ucu_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 6009 mul, 4077 add, 30 div, 18
+/* Acceleration A under the actuator forces tau and the wrench. 3819 mul, 2745 add, 30 div, 18
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6ucu_forward_dynamics(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X,
@@ -190,8 +190,8 @@ size_t hexapod_6ucu_complete_acceleration_batch(const hexapod_6ucu_model *model,
     hexapod_6ucu_real *X, const hexapod_6ucu_real *V, const hexapod_6ucu_real *A,
     hexapod_6ucu_real *completed, int *status);
 
-/* Force, then moment, of each leg on the platform at its platform joint, base axes. 2082 mul,
-   1494 add, 30 div, 18 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench
+/* Force, then moment, of each leg on the platform at its platform joint, base axes. 2058 mul,
+   1488 add, 30 div, 18 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench
    (NW, or NULL). Out: forces (6 x 6). */
 int hexapod_6ucu_leg_reactions(const hexapod_6ucu_model *model, const hexapod_6ucu_real *X, const
     hexapod_6ucu_real *V, const hexapod_6ucu_real *A, const hexapod_6ucu_real *wrench,

@@ -478,10 +478,19 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real J_3_yz = uhs_link3_inertia_yz -
             uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass;
         const real J_3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(J_3_t_3 - J_3_t_4);
+        /* (uhs-N12) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xx = J_2_xx + J_3_xx;
         /* (uhs-G5) first moment of link 3 about the connection point */
         const real h_3_x = rho_tip_3_x*uhs_link3_mass;
         const real h_3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass;
         const real h_3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass;
+        /* (uhs-N38) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_t = J_3_xx*inv_uhs_joint3_pitch*inv_uhs_joint3_pitch;
+        /* (uhs-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its
+           reference point */
+        const real d_phi_3_t = h_3_z*inv_uhs_joint3_pitch;
+        const real d_phi_3_t_2 = h_3_y*inv_uhs_joint3_pitch;
         /* (L2) first moment about the platform origin */
         const real h_star_t_4 = uhs_link3_mass*uhs_platform_point_x;
         const real h_star_t_5 = uhs_link3_mass*uhs_platform_point_y;
@@ -505,15 +514,15 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         const real h_2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass;
         const real h_2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass;
         const real h_2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass;
-        /* (uhs-N16) half the trace of that inertia tensor */
+        /* (uhs-N25) half the trace of that inertia tensor */
         const real trace_J_2 = R(0.5)*J_2_xx + R(0.5)*J_2_yy + R(0.5)*J_2_zz;
-        /* (uhs-N17) second moment of mass of the links that turn with link 2 */
+        /* (uhs-N26) second moment of mass of the links that turn with link 2 */
         const real Sigma_2_xx = trace_J_2 - J_2_xx;
         const real Sigma_2_yy = trace_J_2 - J_2_zz;
         const real Sigma_2_zz = trace_J_2 - J_2_yy;
-        /* (uhs-N8) half the trace of that inertia tensor */
+        /* (uhs-N18) half the trace of that inertia tensor */
         const real trace_J_3 = R(0.5)*J_3_xx + R(0.5)*J_3_yy + R(0.5)*J_3_zz;
-        /* (uhs-N9) second moment of mass of the links that turn with link 3 */
+        /* (uhs-N19) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_xx = trace_J_3 - J_3_yy;
         const real Sigma_3_yy = trace_J_3 - J_3_zz;
         const real Sigma_3_zz = trace_J_3 - J_3_xx;
@@ -524,7 +533,6 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
             uhs_base_frame_yy*uhs_base_point_y + uhs_base_frame_zy*uhs_base_point_z;
         const real b_r0_z = uhs_base_frame_xz*uhs_base_point_x +
             uhs_base_frame_yz*uhs_base_point_y + uhs_base_frame_zz*uhs_base_point_z;
-        model->J_2_xx[leg] = J_2_xx;
         model->J_2_xy[leg] = J_2_xy;
         model->J_2_xz[leg] = J_2_xz;
         model->J_2_yy[leg] = J_2_yy;
@@ -536,6 +544,7 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         model->J_3_yy[leg] = J_3_yy;
         model->J_3_yz[leg] = J_3_yz;
         model->J_3_zz[leg] = J_3_zz;
+        model->Jc_2_xx[leg] = Jc_2_xx;
         model->Sigma_2_xx[leg] = Sigma_2_xx;
         model->Sigma_2_yy[leg] = Sigma_2_yy;
         model->Sigma_2_zz[leg] = Sigma_2_zz;
@@ -547,6 +556,9 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
         model->b_r0_z[leg] = b_r0_z;
         model->branch_1[leg] = branch_1;
         model->branch_2[leg] = branch_2;
+        model->d_G_t[leg] = d_G_t;
+        model->d_phi_3_t[leg] = d_phi_3_t;
+        model->d_phi_3_t_2[leg] = d_phi_3_t_2;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->g_r0_z[leg] = g_r0_z;
@@ -631,7 +643,7 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 3063 mul, 2235 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- dynamics: 2547 mul, 1917 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -823,7 +835,6 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real omega_x = s->omega_x[j];
         const real omega_y = s->omega_y[j];
         const real omega_z = s->omega_z[j];
-        const real J_2_xx = m->J_2_xx[i];
         const real J_2_xy = m->J_2_xy[i];
         const real J_2_xz = m->J_2_xz[i];
         const real J_2_yy = m->J_2_yy[i];
@@ -835,6 +846,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
+        const real Jc_2_xx = m->Jc_2_xx[i];
         const real Sigma_2_xx = m->Sigma_2_xx[i];
         const real Sigma_2_yy = m->Sigma_2_yy[i];
         const real Sigma_2_zz = m->Sigma_2_zz[i];
@@ -843,6 +855,9 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real Sigma_3_zz = m->Sigma_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real d_G_t = m->d_G_t[i];
+        const real d_phi_3_t = m->d_phi_3_t[i];
+        const real d_phi_3_t_2 = m->d_phi_3_t_2[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
@@ -911,9 +926,10 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         /* (uhs-K26) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(q_3);
         /* (uhs-V4) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*s_3;
-        const real v_1_t_2 = root_2*v_1_t;
-        const real v_1_t_3 = c_2*c_3_t*root_2;
+        const real v_1_t = c_2*c_3_t;
+        const real v_1_t_2 = c_2*s_3;
+        const real v_1_t_3 = root_2*v_1_t_2;
+        const real v_1_t_4 = root_2*v_1_t;
         /* (uhs-V7) reciprocal vector 1 */
         const real inv_root_2 = 1/root_2;
         const real axis_z_x = S_x*inv_root_2;
@@ -929,114 +945,80 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t;
         const real axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t;
         const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*v_1_t;
+            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*v_1_t_2;
         const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*v_1_t;
+            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*v_1_t_2;
         const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*v_1_t;
+            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*v_1_t_2;
         const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*axis_z_z -
             axis_y_uhs_axes3_in_base_z*axis_z_y;
         const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*axis_z_x -
             axis_y_uhs_axes3_in_base_x*axis_z_z;
         const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*axis_z_y -
             axis_y_uhs_axes3_in_base_y*axis_z_x;
+        /* (uhs-G6) inertia tensor of link 3 about the connection point */
+        const real J_3_t = J_3_yz*s_3;
+        const real _x = J_3_yy*c_3_t - J_3_t;
+        const real J_3_t_2 = J_3_yz*c_3_t;
+        const real _x_2 = J_3_t_2 - J_3_zz*s_3;
+        const real _x_3 = J_3_xy*c_3_t - J_3_xz*s_3;
+        const real _y = J_3_xy*s_3 + J_3_xz*c_3_t;
+        /* (uhs-N12) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xy = _x_3 - J_2_xz;
+        const real _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_3 + _x_2*c_3_t - J_2_yz);
         /* (uhs-V4) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_3_t*v_1_t_2 - s_3*v_1_t_3;
-        const real v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2;
+        const real v_1_r0_x = c_3_t*v_1_t_3 - s_3*v_1_t_4;
+        const real v_1_r0_y = c_3_t*v_1_t_4 + s_3*v_1_t_3;
         /* (uhs-V7) reciprocal vector 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         const real w_1_t_2 = inv_v_1_r0_y*s_3;
         const real w_1_t_3 = c_3_t*inv_v_1_r0_y;
-        const real w_1_r0_x = c_3_t*w_1_t_2 - s_3*w_1_t_3;
-        const real w_1_r0_y = c_3_t*w_1_t_3 + s_3*w_1_t_2;
-        const real w_1_t_4 = s_2*w_1_r0_x;
-        const real w_1_t_5 = c_2*w_1_r0_x;
         /* (uhs-V8) reciprocal vector 2 */
         const real w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x;
         const real _r1_x = c_3_t*inv_root_2 - s_3*w_2_t;
         const real _r1_y = -c_3_t*w_2_t - inv_root_2*s_3;
-        /* (uhs-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = s_2*w_1_t_4;
-        const real d_alpha_1_t_2 = c_2*w_1_t_4;
-        const real d_alpha_1_t_3 = s_2*w_1_t_5;
-        const real d_alpha_1_t_4 = c_2*w_1_t_5;
-        const real d_alpha_1_t_5 = s_2*w_1_r0_y;
-        const real d_alpha_1_t_6 = c_2*w_1_r0_y;
-        const real _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2;
-        const real _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2;
-        const real _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2;
-        const real _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2;
-        /* (uhs-V8) reciprocal vector 2 */
-        const real w_2_r0_x = _r1_x*c_3_t - _r1_y*s_3;
-        const real w_2_r0_y = _r1_x*s_3 + _r1_y*c_3_t;
-        /* (uhs-A20) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = _y_2*c_3_t + s_3*w_2_r0_x;
-        const real _y_3 = c_3_t*w_2_r0_x - _y_2*s_3;
-        const real _x_4 = s_3*w_2_r0_y - c_3_t*d_alpha_1_t_6;
-        const real _y_4 = c_3_t*w_2_r0_y + d_alpha_1_t_6*s_3;
-        const real d_alpha_2_t = _x_2*c_3_t;
-        const real d_alpha_2_t_2 = _x_2*s_3;
-        const real _x_5 = _x_3*c_3_t + _x_4*s_3;
-        const real _y_5 = _x_4*c_3_t - _x_3*s_3;
-        const real _x_6 = _y_3*c_3_t + _y_4*s_3;
-        const real _y_6 = _y_4*c_3_t - _y_3*s_3;
-        const real _x_7 = _y*c_3_t + d_alpha_1_t_5*s_3;
-        const real _y_7 = c_3_t*d_alpha_1_t_5 - _y*s_3;
-        /* (uhs-A25) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_zz = _x + inv_uhs_joint3_pitch;
-        /* (uhs-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xy*_x_7 + J_3_yy*_x_5 + J_3_yz*_x_6;
-        const real d_mu_3_t_2 = J_3_xz*_y_7 + J_3_yz*_y_5 + J_3_zz*_y_6;
-        const real d_mu_3_t_3 = J_3_xx*d_alpha_3_zz + J_3_xy*d_alpha_2_t - J_3_xz*d_alpha_2_t_2;
-        const real d_mu_3_xy = J_3_xy*_y_7 + J_3_yy*_y_5 + J_3_yz*_y_6 - h_3_x;
-        const real d_mu_3_xz = h_3_z + J_3_xy*d_alpha_3_zz + J_3_yy*d_alpha_2_t -
-            J_3_yz*d_alpha_2_t_2;
-        const real d_mu_3_yx = h_3_x + J_3_xz*_x_7 + J_3_yz*_x_5 + J_3_zz*_x_6;
-        const real d_mu_3_yz = J_3_xz*d_alpha_3_zz + J_3_yz*d_alpha_2_t - h_3_y -
-            J_3_zz*d_alpha_2_t_2;
-        const real d_mu_3_zx = J_3_xx*_x_7 + J_3_xy*_x_5 + J_3_xz*_x_6 - h_3_z;
-        const real d_mu_3_zy = h_3_y + J_3_xx*_y_7 + J_3_xy*_y_5 + J_3_xz*_y_6;
-        const real _x_8 = c_3_t*d_mu_3_t - d_mu_3_yx*s_3;
-        const real _y_8 = c_3_t*d_mu_3_yx + d_mu_3_t*s_3;
-        const real _x_9 = c_3_t*d_mu_3_xy - d_mu_3_t_2*s_3;
-        const real _y_9 = c_3_t*d_mu_3_t_2 + d_mu_3_xy*s_3;
-        /* (uhs-N22) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_zx = J_2_xy*_x + c_3_t*d_mu_3_yz + d_mu_3_xz*s_3 - J_2_yz*_x_2;
-        const real d_N_2_zy = J_2_xy*_y + J_2_yy*w_2_r0_x + _y_8*c_3_t - J_2_yz*_y_2 - _y_9*s_3;
-        const real d_N_2_zz = J_2_xy*d_alpha_1_t_5 + J_2_yy*w_2_r0_y + J_2_yz*d_alpha_1_t_6 +
-            _y_8*s_3 + _y_9*c_3_t;
-        /* (uhs-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (uhs-G5) first moment of link 3 about the connection point */
+        const real h_3_r1_x = c_3_t*h_3_y - h_3_z*s_3;
+        /* (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_x = s_2*(d_mu_3_t_3 + J_2_xx*_x - J_2_xz*_x_2) - c_2*(J_2_zz*_x_2 +
-            c_3_t*d_mu_3_xz - J_2_xz*_x - d_mu_3_yz*s_3);
-        const real d_Gamma_1_y = s_2*(J_2_xx*_y + J_2_xy*w_2_r0_x + c_3_t*d_mu_3_zx - J_2_xz*_y_2
-            - d_mu_3_zy*s_3) - c_2*(J_2_zz*_y_2 + _x_8*c_3_t - J_2_xz*_y - J_2_yz*w_2_r0_x -
-            _x_9*s_3);
-        const real d_Gamma_1_z = s_2*(J_2_xx*d_alpha_1_t_5 + J_2_xy*w_2_r0_y +
-            J_2_xz*d_alpha_1_t_6 + c_3_t*d_mu_3_zy + d_mu_3_zx*s_3) - c_2*(_x_8*s_3 + _x_9*c_3_t -
-            J_2_xz*d_alpha_1_t_5 - J_2_yz*w_2_r0_y - J_2_zz*d_alpha_1_t_6);
-        const real d_Gamma_1_r1_y = c_3_t*d_Gamma_1_z - d_Gamma_1_y*s_3;
-        /* (uhs-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        const real d_Gamma_1_t = _y_2*inv_root_2;
+        const real d_Gamma_1_t_2 = s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2) - c_2*(Jc_2_xy*s_2 -
+            c_2*(J_2_zz + _x*c_3_t - _x_2*s_3)) - d_Gamma_1_t*v_1_r0_x;
+        const real d_Gamma_1_t_3 = inv_uhs_joint3_pitch*(J_3_xx*s_2 - _x_3*c_2);
+        const real _r0_y = d_Gamma_1_t_3*s_2 - c_2*d_Gamma_1_t;
+        const real d_Gamma_1_x = c_2*h_3_x + d_Gamma_1_t_2*inv_v_1_r0_y + h_3_r1_x*s_2;
+        const real d_Gamma_1_y = c_3_t*h_3_z + h_3_y*s_3 - c_2*d_Gamma_1_t_3 - d_Gamma_1_t*s_2;
+        /* (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_r1_y = c_3_t*d_N_2_zz - d_N_2_zy*s_3;
-        /* (uhs-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_t = inv_root_2*(J_2_yy + c_3_t*(J_3_t + J_3_zz*c_3_t) + s_3*(J_3_t_2
+            + J_3_yy*s_3));
+        const real d_Gamma_2_t_2 = inv_v_1_r0_y*(_y_2 - d_Gamma_2_t*v_1_r0_x);
+        const real d_Gamma_2_x = _y*inv_uhs_joint3_pitch - h_3_r1_x;
+        const real d_Gamma_2_y = d_Gamma_2_t + h_3_x;
+        /* (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_r1_x = _r0_y*s_2 - c_2*d_Gamma_1_y;
+        const real d_Gamma_1_r1_y = -_r0_y*c_2 - d_Gamma_1_y*s_2;
+        const real d_Gamma_1_r3_y = c_3_t*d_Gamma_1_x - d_Gamma_1_r1_y*s_3;
+        /* (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_r1_y = c_3_t*d_Gamma_2_t_2 - d_Gamma_2_y*s_3;
+        /* (uhs-A23) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = s_2*w_1_t_3;
+        /* (uhs-N41) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = _x_7*h_3_z - _r1_x*(c_3_t*d_N_2_zy + d_N_2_zz*s_3) - _x_6*h_3_x -
-            w_1_t_2*(c_3_t*d_Gamma_1_y + d_Gamma_1_z*s_3);
-        const real d_c_xy = _y_7*h_3_z - _r1_x*d_Gamma_2_r1_y - _y_6*h_3_x -
-            d_Gamma_1_r1_y*w_1_t_2;
-        const real d_c_xz = d_alpha_2_t_2*h_3_x + d_alpha_3_zz*h_3_z - _r1_x*d_N_2_zx -
-            d_Gamma_1_x*w_1_t_2;
-        const real d_c_yz = d_alpha_2_t*h_3_x - _r1_y*d_N_2_zx - d_Gamma_1_x*w_1_t_3 -
-            d_alpha_3_zz*h_3_y;
-        /* (uhs-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + _y_7*h_3_y + d_Gamma_1_r1_y*w_1_t_3 -
-            _y_5*h_3_x;
+        const real d_c_xx = h_3_z*s_2*w_1_t_2 - _r1_x*(c_3_t*d_Gamma_2_y + d_Gamma_2_t_2*s_3) -
+            h_3_x*(_r1_x*c_3_t + v_1_t_2*w_1_t_2) - w_1_t_2*(c_3_t*d_Gamma_1_r1_y +
+            d_Gamma_1_x*s_3);
+        const real d_c_xy = d_alpha_3_t*h_3_z - _r1_x*d_Gamma_2_r1_y - d_Gamma_1_r3_y*w_1_t_2 -
+            h_3_x*(_r1_y*c_3_t + v_1_t_2*w_1_t_3);
+        const real d_c_xz = d_phi_3_t - _r1_x*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_2;
+        const real d_c_yz = -d_phi_3_t_2 - _r1_y*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_3;
+        /* (uhs-N43) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + d_Gamma_1_r3_y*w_1_t_3 +
+            d_alpha_3_t*h_3_y - h_3_x*(_r1_y*s_3 - v_1_t*w_1_t_3);
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_alpha_2_t*h_3_z + d_alpha_2_t_2*h_3_y +
-            d_mu_3_t_3*inv_uhs_joint3_pitch;
+        const real Q_t_3 = d_G_t + d_c_xx;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_uhs_axes3_x*d_c_xy + axis_z_x*d_c_yz -
             Q_t_2*axis_y_uhs_axes3_in_base_x;
@@ -1135,18 +1117,14 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
         const real W_3_xz = omega_2_r1_x*omega_3_z;
         const real W_3_yz = omega_2_r1_y*omega_3_z;
+        const real W_3_zz = W_3_t + W_3_t_2;
         /* (uhs-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_y*uhs_joint3_offset_x;
-        const real bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x;
-        const real bias_t_3 = omega_2_r1_y*x_3_x;
-        const real bias_t_4 = omega_2_r1_x*x_3_x;
-        const real bias_t_5 = 2*qd_3*uhs_joint3_pitch;
-        const real bias_x = beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z +
-            bias_t_5*omega_2_r1_y + uhs_joint3_offset_x*zeta_2_t_2;
-        const real bias_y = bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t -
-            beta_3_x*x_3_x - bias_t_5*omega_2_r1_x;
-        const real bias_z = -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y -
-            bias_t_4*omega_2_r1_x;
+        const real bias_t = 2*qd_3*uhs_joint3_pitch;
+        const real bias_x = bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 +
+            omega_1_t*omega_2_r1_x) + x_3_x*(W_3_xz + beta_3_y);
+        const real bias_y = uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) +
+            x_3_x*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
+        const real bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x;
         /* (uhs-A1) centripetal acceleration of the connection point */
         const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
@@ -1164,18 +1142,18 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         /* (uhs-A11) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_v_1_r0_y*(c_3_t*rel_o_y + rel_o_x*s_3);
         const real qdd_2_o = inv_root_2*(qdd_1_o*v_1_r0_x + rel_o_y*s_3 - c_3_t*rel_o_x);
-        /* (uhs-A18) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (uhs-A17) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (uhs-A21) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (uhs-A19) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (uhs-A23) acceleration tensor of link 2 */
+        /* (uhs-A21) acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_2_o - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (uhs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (uhs-N28) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_x = B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
@@ -1188,18 +1166,18 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real acc_3_o_x = u_1_tip_x - c_3_t*g_r3_y - g_r1_x*s_3;
         const real acc_3_o_y = u_1_tip_y + g_r3_y*s_3 - c_3_t*g_r1_x;
         const real acc_3_o_z = u_1_tip_z - g_r3_x;
-        /* (uhs-A26) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (uhs-A24) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3;
         const real alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o;
         const real alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z;
-        /* (uhs-A28) acceleration tensor of link 3 */
+        /* (uhs-A26) acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
         const real B_3_o_yz = W_3_yz - alpha_3_o_x;
         const real B_3_o_zx = W_3_xz - alpha_3_o_y;
         const real B_3_o_zy = W_3_yz + alpha_3_o_x;
-        /* (uhs-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (uhs-N21) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) +
             acc_3_o_z*h_3_z - B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_yz - acc_3_o_y*h_3_x;
@@ -1207,24 +1185,24 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
             B_3_o_xy*J_3_xz - B_3_o_zx*Sigma_3_xx - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_y;
         const real mu_3_o_z = B_3_o_xz*J_3_xz + B_3_o_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) +
             acc_3_o_y*h_3_y - B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xy - acc_3_o_x*h_3_z;
-        /* (uhs-N23) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (uhs-N30) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_o_x = mu_2_o_x + mu_3_o_z;
         const real N_2_o_y = mu_2_o_y + c_3_t*mu_3_o_x - mu_3_o_y*s_3;
         const real N_2_o_z = mu_2_o_z + c_3_t*mu_3_o_y + mu_3_o_x*s_3;
-        /* (uhs-N32) remainder without the acceleration in: force at the connection point that balances
+        /* (uhs-N39) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = N_2_o_z*inv_root_2;
         const real G_o_t_2 = inv_v_1_r0_y*(G_o_t*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2);
-        /* (uhs-N35) remainder without the acceleration in: leg force on the platform without actuation
+        /* (uhs-N42) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = G_o_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_z -
             B_3_o_xz*h_3_x - G_o_t*c_3_t;
         const real c_o_y = G_o_t*s_3 + G_o_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_y -
             B_3_o_yz*h_3_x;
-        const real c_o_z = h_3_x*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z -
+        const real c_o_z = W_3_zz*h_3_x - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z -
             inv_uhs_joint3_pitch*mu_3_o_z;
-        /* (uhs-N37) velocity and gravity terms of the leg force */
+        /* (uhs-N44) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_uhs_axes3_x*c_o_x - axis_y_uhs_axes3_in_base_x*c_o_y -
             axis_z_x*c_o_z;
         const real U_in_base_y = -axis_x_uhs_axes3_y*c_o_x - axis_y_uhs_axes3_in_base_y*c_o_y -
@@ -1460,7 +1438,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 1809 mul, 1257 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- M: 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1584,7 +1562,6 @@ INLINE void M_legs_uhs(const prepared *m, size_t leg, size_t legs, const M_value
         const real R_zx = s->R_zx[j];
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
-        const real J_2_xx = m->J_2_xx[i];
         const real J_2_xy = m->J_2_xy[i];
         const real J_2_xz = m->J_2_xz[i];
         const real J_2_yy = m->J_2_yy[i];
@@ -1596,8 +1573,12 @@ INLINE void M_legs_uhs(const prepared *m, size_t leg, size_t legs, const M_value
         const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
+        const real Jc_2_xx = m->Jc_2_xx[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real d_G_t = m->d_G_t[i];
+        const real d_phi_3_t = m->d_phi_3_t[i];
+        const real d_phi_3_t_2 = m->d_phi_3_t_2[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -1659,9 +1640,10 @@ INLINE void M_legs_uhs(const prepared *m, size_t leg, size_t legs, const M_value
         /* (uhs-K26) sine of the angle of joint 3 from its reference direction */
         const real s_3 = cosine(q_3);
         /* (uhs-V4) velocity of the connection point per rate of joint 1 */
-        const real v_1_t = c_2*s_3;
-        const real v_1_t_2 = root_2*v_1_t;
-        const real v_1_t_3 = c_2*c_3_t*root_2;
+        const real v_1_t = c_2*c_3_t;
+        const real v_1_t_2 = c_2*s_3;
+        const real v_1_t_3 = root_2*v_1_t_2;
+        const real v_1_t_4 = root_2*v_1_t;
         /* (uhs-V7) reciprocal vector 1 */
         const real inv_root_2 = 1/root_2;
         const real axis_z_x = S_x*inv_root_2;
@@ -1677,113 +1659,80 @@ INLINE void M_legs_uhs(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_uhs_axes3_r4_x = -c_1*c_3_t - s_1*w_1_t;
         const real axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t;
         const real axis_y_uhs_axes3_in_base_x = axis_y_uhs_axes3_r4_x*uhs_base_frame_xx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*v_1_t;
+            axis_y_uhs_axes3_r4_y*uhs_base_frame_xy + uhs_base_frame_xz*v_1_t_2;
         const real axis_y_uhs_axes3_in_base_y = axis_y_uhs_axes3_r4_x*uhs_base_frame_yx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*v_1_t;
+            axis_y_uhs_axes3_r4_y*uhs_base_frame_yy + uhs_base_frame_yz*v_1_t_2;
         const real axis_y_uhs_axes3_in_base_z = axis_y_uhs_axes3_r4_x*uhs_base_frame_zx +
-            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*v_1_t;
+            axis_y_uhs_axes3_r4_y*uhs_base_frame_zy + uhs_base_frame_zz*v_1_t_2;
         const real axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*axis_z_z -
             axis_y_uhs_axes3_in_base_z*axis_z_y;
         const real axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*axis_z_x -
             axis_y_uhs_axes3_in_base_x*axis_z_z;
         const real axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*axis_z_y -
             axis_y_uhs_axes3_in_base_y*axis_z_x;
+        /* (uhs-G6) inertia tensor of link 3 about the connection point */
+        const real J_3_t = J_3_yz*s_3;
+        const real _x = J_3_yy*c_3_t - J_3_t;
+        const real J_3_t_2 = J_3_yz*c_3_t;
+        const real _x_2 = J_3_t_2 - J_3_zz*s_3;
+        const real _x_3 = J_3_xy*c_3_t - J_3_xz*s_3;
+        const real _y = J_3_xy*s_3 + J_3_xz*c_3_t;
+        /* (uhs-N12) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xy = _x_3 - J_2_xz;
+        const real _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_3 + _x_2*c_3_t - J_2_yz);
         /* (uhs-V4) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2;
+        const real v_1_r0_x = c_3_t*v_1_t_3 - s_3*v_1_t_4;
+        const real v_1_r0_y = c_3_t*v_1_t_4 + s_3*v_1_t_3;
         /* (uhs-V7) reciprocal vector 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         const real w_1_t_2 = inv_v_1_r0_y*s_3;
         const real w_1_t_3 = c_3_t*inv_v_1_r0_y;
-        const real w_1_r0_x = c_3_t*w_1_t_2 - s_3*w_1_t_3;
-        const real w_1_r0_y = c_3_t*w_1_t_3 + s_3*w_1_t_2;
-        const real w_1_t_4 = s_2*w_1_r0_x;
-        const real w_1_t_5 = c_2*w_1_r0_x;
         /* (uhs-V8) reciprocal vector 2 */
-        const real w_2_t = inv_root_2*inv_v_1_r0_y*(c_3_t*v_1_t_2 - s_3*v_1_t_3);
+        const real w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x;
         const real _r1_x = c_3_t*inv_root_2 - s_3*w_2_t;
         const real _r1_y = -c_3_t*w_2_t - inv_root_2*s_3;
-        /* (uhs-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = s_2*w_1_t_4;
-        const real d_alpha_1_t_2 = c_2*w_1_t_4;
-        const real d_alpha_1_t_3 = s_2*w_1_t_5;
-        const real d_alpha_1_t_4 = c_2*w_1_t_5;
-        const real d_alpha_1_t_5 = s_2*w_1_r0_y;
-        const real d_alpha_1_t_6 = c_2*w_1_r0_y;
-        const real _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2;
-        const real _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2;
-        const real _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2;
-        const real _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2;
-        /* (uhs-V8) reciprocal vector 2 */
-        const real w_2_r0_x = _r1_x*c_3_t - _r1_y*s_3;
-        const real w_2_r0_y = _r1_x*s_3 + _r1_y*c_3_t;
-        /* (uhs-A20) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = _y_2*c_3_t + s_3*w_2_r0_x;
-        const real _y_3 = c_3_t*w_2_r0_x - _y_2*s_3;
-        const real _x_4 = s_3*w_2_r0_y - c_3_t*d_alpha_1_t_6;
-        const real _y_4 = c_3_t*w_2_r0_y + d_alpha_1_t_6*s_3;
-        const real d_alpha_2_t = _x_2*c_3_t;
-        const real d_alpha_2_t_2 = _x_2*s_3;
-        const real _x_5 = _x_3*c_3_t + _x_4*s_3;
-        const real _y_5 = _x_4*c_3_t - _x_3*s_3;
-        const real _x_6 = _y_3*c_3_t + _y_4*s_3;
-        const real _y_6 = _y_4*c_3_t - _y_3*s_3;
-        const real _x_7 = _y*c_3_t + d_alpha_1_t_5*s_3;
-        const real _y_7 = c_3_t*d_alpha_1_t_5 - _y*s_3;
-        /* (uhs-A25) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_zz = _x + inv_uhs_joint3_pitch;
-        /* (uhs-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xy*_x_7 + J_3_yy*_x_5 + J_3_yz*_x_6;
-        const real d_mu_3_t_2 = J_3_xz*_y_7 + J_3_yz*_y_5 + J_3_zz*_y_6;
-        const real d_mu_3_t_3 = J_3_xx*d_alpha_3_zz + J_3_xy*d_alpha_2_t - J_3_xz*d_alpha_2_t_2;
-        const real d_mu_3_xy = J_3_xy*_y_7 + J_3_yy*_y_5 + J_3_yz*_y_6 - h_3_x;
-        const real d_mu_3_xz = h_3_z + J_3_xy*d_alpha_3_zz + J_3_yy*d_alpha_2_t -
-            J_3_yz*d_alpha_2_t_2;
-        const real d_mu_3_yx = h_3_x + J_3_xz*_x_7 + J_3_yz*_x_5 + J_3_zz*_x_6;
-        const real d_mu_3_yz = J_3_xz*d_alpha_3_zz + J_3_yz*d_alpha_2_t - h_3_y -
-            J_3_zz*d_alpha_2_t_2;
-        const real d_mu_3_zx = J_3_xx*_x_7 + J_3_xy*_x_5 + J_3_xz*_x_6 - h_3_z;
-        const real d_mu_3_zy = h_3_y + J_3_xx*_y_7 + J_3_xy*_y_5 + J_3_xz*_y_6;
-        const real _x_8 = c_3_t*d_mu_3_t - d_mu_3_yx*s_3;
-        const real _y_8 = c_3_t*d_mu_3_yx + d_mu_3_t*s_3;
-        const real _x_9 = c_3_t*d_mu_3_xy - d_mu_3_t_2*s_3;
-        const real _y_9 = c_3_t*d_mu_3_t_2 + d_mu_3_xy*s_3;
-        /* (uhs-N22) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_zx = J_2_xy*_x + c_3_t*d_mu_3_yz + d_mu_3_xz*s_3 - J_2_yz*_x_2;
-        const real d_N_2_zy = J_2_xy*_y + J_2_yy*w_2_r0_x + _y_8*c_3_t - J_2_yz*_y_2 - _y_9*s_3;
-        const real d_N_2_zz = J_2_xy*d_alpha_1_t_5 + J_2_yy*w_2_r0_y + J_2_yz*d_alpha_1_t_6 +
-            _y_8*s_3 + _y_9*c_3_t;
-        /* (uhs-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+        /* (uhs-G5) first moment of link 3 about the connection point */
+        const real h_3_r1_x = c_3_t*h_3_y - h_3_z*s_3;
+        /* (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_x = s_2*(d_mu_3_t_3 + J_2_xx*_x - J_2_xz*_x_2) - c_2*(J_2_zz*_x_2 +
-            c_3_t*d_mu_3_xz - J_2_xz*_x - d_mu_3_yz*s_3);
-        const real d_Gamma_1_y = s_2*(J_2_xx*_y + J_2_xy*w_2_r0_x + c_3_t*d_mu_3_zx - J_2_xz*_y_2
-            - d_mu_3_zy*s_3) - c_2*(J_2_zz*_y_2 + _x_8*c_3_t - J_2_xz*_y - J_2_yz*w_2_r0_x -
-            _x_9*s_3);
-        const real d_Gamma_1_z = s_2*(J_2_xx*d_alpha_1_t_5 + J_2_xy*w_2_r0_y +
-            J_2_xz*d_alpha_1_t_6 + c_3_t*d_mu_3_zy + d_mu_3_zx*s_3) - c_2*(_x_8*s_3 + _x_9*c_3_t -
-            J_2_xz*d_alpha_1_t_5 - J_2_yz*w_2_r0_y - J_2_zz*d_alpha_1_t_6);
-        const real d_Gamma_1_r1_y = c_3_t*d_Gamma_1_z - d_Gamma_1_y*s_3;
-        /* (uhs-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+        const real d_Gamma_1_t = _y_2*inv_root_2;
+        const real d_Gamma_1_t_2 = s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2) - c_2*(Jc_2_xy*s_2 -
+            c_2*(J_2_zz + _x*c_3_t - _x_2*s_3)) - d_Gamma_1_t*v_1_r0_x;
+        const real d_Gamma_1_t_3 = inv_uhs_joint3_pitch*(J_3_xx*s_2 - _x_3*c_2);
+        const real _r0_y = d_Gamma_1_t_3*s_2 - c_2*d_Gamma_1_t;
+        const real d_Gamma_1_x = c_2*h_3_x + d_Gamma_1_t_2*inv_v_1_r0_y + h_3_r1_x*s_2;
+        const real d_Gamma_1_y = c_3_t*h_3_z + h_3_y*s_3 - c_2*d_Gamma_1_t_3 - d_Gamma_1_t*s_2;
+        /* (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_r1_y = c_3_t*d_N_2_zz - d_N_2_zy*s_3;
-        /* (uhs-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_t = inv_root_2*(J_2_yy + c_3_t*(J_3_t + J_3_zz*c_3_t) + s_3*(J_3_t_2
+            + J_3_yy*s_3));
+        const real d_Gamma_2_t_2 = inv_v_1_r0_y*(_y_2 - d_Gamma_2_t*v_1_r0_x);
+        const real d_Gamma_2_x = _y*inv_uhs_joint3_pitch - h_3_r1_x;
+        const real d_Gamma_2_y = d_Gamma_2_t + h_3_x;
+        /* (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_r1_x = _r0_y*s_2 - c_2*d_Gamma_1_y;
+        const real d_Gamma_1_r1_y = -_r0_y*c_2 - d_Gamma_1_y*s_2;
+        const real d_Gamma_1_r3_y = c_3_t*d_Gamma_1_x - d_Gamma_1_r1_y*s_3;
+        /* (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_r1_y = c_3_t*d_Gamma_2_t_2 - d_Gamma_2_y*s_3;
+        /* (uhs-A23) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = s_2*w_1_t_3;
+        /* (uhs-N41) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = _x_7*h_3_z - _r1_x*(c_3_t*d_N_2_zy + d_N_2_zz*s_3) - _x_6*h_3_x -
-            w_1_t_2*(c_3_t*d_Gamma_1_y + d_Gamma_1_z*s_3);
-        const real d_c_xy = _y_7*h_3_z - _r1_x*d_Gamma_2_r1_y - _y_6*h_3_x -
-            d_Gamma_1_r1_y*w_1_t_2;
-        const real d_c_xz = d_alpha_2_t_2*h_3_x + d_alpha_3_zz*h_3_z - _r1_x*d_N_2_zx -
-            d_Gamma_1_x*w_1_t_2;
-        const real d_c_yz = d_alpha_2_t*h_3_x - _r1_y*d_N_2_zx - d_Gamma_1_x*w_1_t_3 -
-            d_alpha_3_zz*h_3_y;
-        /* (uhs-N36) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + _y_7*h_3_y + d_Gamma_1_r1_y*w_1_t_3 -
-            _y_5*h_3_x;
+        const real d_c_xx = h_3_z*s_2*w_1_t_2 - _r1_x*(c_3_t*d_Gamma_2_y + d_Gamma_2_t_2*s_3) -
+            h_3_x*(_r1_x*c_3_t + v_1_t_2*w_1_t_2) - w_1_t_2*(c_3_t*d_Gamma_1_r1_y +
+            d_Gamma_1_x*s_3);
+        const real d_c_xy = d_alpha_3_t*h_3_z - _r1_x*d_Gamma_2_r1_y - d_Gamma_1_r3_y*w_1_t_2 -
+            h_3_x*(_r1_y*c_3_t + v_1_t_2*w_1_t_3);
+        const real d_c_xz = d_phi_3_t - _r1_x*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_2;
+        const real d_c_yz = -d_phi_3_t_2 - _r1_y*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_3;
+        /* (uhs-N43) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + d_Gamma_1_r3_y*w_1_t_3 +
+            d_alpha_3_t*h_3_y - h_3_x*(_r1_y*s_3 - v_1_t*w_1_t_3);
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_alpha_2_t*h_3_z + d_alpha_2_t_2*h_3_y +
-            d_mu_3_t_3*inv_uhs_joint3_pitch;
+        const real Q_t_3 = d_G_t + d_c_xx;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_uhs_axes3_x*d_c_xy + axis_z_x*d_c_yz -
             Q_t_2*axis_y_uhs_axes3_in_base_x;
@@ -1990,7 +1939,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 36, w, code, M);
 }
 
-/* ---- Z: 1587 mul, 1176 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- Z: 1539 mul, 1164 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -2322,18 +2271,14 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
         const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
         const real W_3_xz = omega_2_r1_x*omega_3_z;
         const real W_3_yz = omega_2_r1_y*omega_3_z;
+        const real W_3_zz = W_3_t + W_3_t_2;
         /* (uhs-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_y*uhs_joint3_offset_x;
-        const real bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x;
-        const real bias_t_3 = omega_2_r1_y*x_3_x;
-        const real bias_t_4 = omega_2_r1_x*x_3_x;
-        const real bias_t_5 = 2*qd_3*uhs_joint3_pitch;
-        const real bias_x = beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z +
-            bias_t_5*omega_2_r1_y + uhs_joint3_offset_x*zeta_2_t_2;
-        const real bias_y = bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t -
-            beta_3_x*x_3_x - bias_t_5*omega_2_r1_x;
-        const real bias_z = -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y -
-            bias_t_4*omega_2_r1_x;
+        const real bias_t = 2*qd_3*uhs_joint3_pitch;
+        const real bias_x = bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 +
+            omega_1_t*omega_2_r1_x) + x_3_x*(W_3_xz + beta_3_y);
+        const real bias_y = uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) +
+            x_3_x*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
+        const real bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x;
         /* (uhs-A1) centripetal acceleration of the connection point */
         const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
@@ -2351,18 +2296,18 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (uhs-A11) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_v_1_r0_y*(c_3_t*rel_o_y + rel_o_x*s_3);
         const real qdd_2_o = inv_root_2*(qdd_1_o*v_1_r0_x + rel_o_y*s_3 - c_3_t*rel_o_x);
-        /* (uhs-A18) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (uhs-A17) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (uhs-A21) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (uhs-A19) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (uhs-A23) acceleration tensor of link 2 */
+        /* (uhs-A21) acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_2_o - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (uhs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (uhs-N28) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_x = B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
@@ -2375,18 +2320,18 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
         const real acc_3_o_x = u_1_tip_x - c_3_t*g_r3_y - g_r1_x*s_3;
         const real acc_3_o_y = u_1_tip_y + g_r3_y*s_3 - c_3_t*g_r1_x;
         const real acc_3_o_z = u_1_tip_z - g_r3_x;
-        /* (uhs-A26) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (uhs-A24) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3;
         const real alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o;
         const real alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z;
-        /* (uhs-A28) acceleration tensor of link 3 */
+        /* (uhs-A26) acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
         const real B_3_o_yz = W_3_yz - alpha_3_o_x;
         const real B_3_o_zx = W_3_xz - alpha_3_o_y;
         const real B_3_o_zy = W_3_yz + alpha_3_o_x;
-        /* (uhs-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (uhs-N21) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xy + B_3_o_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) +
             acc_3_o_z*h_3_z - B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_yz - acc_3_o_y*h_3_x;
@@ -2394,24 +2339,24 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
             B_3_o_xy*J_3_xz - B_3_o_zx*Sigma_3_xx - J_3_xy*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_y;
         const real mu_3_o_z = B_3_o_xz*J_3_xz + B_3_o_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) +
             acc_3_o_y*h_3_y - B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xy - acc_3_o_x*h_3_z;
-        /* (uhs-N23) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (uhs-N30) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_o_x = mu_2_o_x + mu_3_o_z;
         const real N_2_o_y = mu_2_o_y + c_3_t*mu_3_o_x - mu_3_o_y*s_3;
         const real N_2_o_z = mu_2_o_z + c_3_t*mu_3_o_y + mu_3_o_x*s_3;
-        /* (uhs-N32) remainder without the acceleration in: force at the connection point that balances
+        /* (uhs-N39) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = N_2_o_z*inv_root_2;
         const real G_o_t_2 = inv_v_1_r0_y*(G_o_t*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2);
-        /* (uhs-N35) remainder without the acceleration in: leg force on the platform without actuation
+        /* (uhs-N42) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = G_o_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_z -
             B_3_o_xz*h_3_x - G_o_t*c_3_t;
         const real c_o_y = G_o_t*s_3 + G_o_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_y -
             B_3_o_yz*h_3_x;
-        const real c_o_z = h_3_x*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z -
+        const real c_o_z = W_3_zz*h_3_x - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z -
             inv_uhs_joint3_pitch*mu_3_o_z;
-        /* (uhs-N37) velocity and gravity terms of the leg force */
+        /* (uhs-N44) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_uhs_axes3_x*c_o_x - axis_y_uhs_axes3_in_base_x*c_o_y -
             axis_z_x*c_o_z;
         const real U_in_base_y = -axis_x_uhs_axes3_y*c_o_x - axis_y_uhs_axes3_in_base_y*c_o_y -
@@ -2700,7 +2645,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- required: 1731 mul, 1299 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- required: 1683 mul, 1287 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3075,18 +3020,14 @@ INLINE void required_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
         const real W_3_xz = omega_2_r1_x*omega_3_z;
         const real W_3_yz = omega_2_r1_y*omega_3_z;
+        const real W_3_zz = W_3_t + W_3_t_2;
         /* (uhs-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_y*uhs_joint3_offset_x;
-        const real bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x;
-        const real bias_t_3 = omega_2_r1_y*x_3_x;
-        const real bias_t_4 = omega_2_r1_x*x_3_x;
-        const real bias_t_5 = 2*qd_3*uhs_joint3_pitch;
-        const real bias_x = beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z +
-            bias_t_5*omega_2_r1_y + uhs_joint3_offset_x*zeta_2_t_2;
-        const real bias_y = bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t -
-            beta_3_x*x_3_x - bias_t_5*omega_2_r1_x;
-        const real bias_z = -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y -
-            bias_t_4*omega_2_r1_x;
+        const real bias_t = 2*qd_3*uhs_joint3_pitch;
+        const real bias_x = bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 +
+            omega_1_t*omega_2_r1_x) + x_3_x*(W_3_xz + beta_3_y);
+        const real bias_y = uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) +
+            x_3_x*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
+        const real bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x;
         /* (uhs-V9) reciprocal vector 3 */
         const real w_3_t = axis_z_x*inv_uhs_joint3_pitch;
         const real w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch;
@@ -3125,56 +3066,55 @@ INLINE void required_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         /* (uhs-A16) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_2;
         const real alpha_1_t_2 = c_2*qdd_1;
-        /* (uhs-A19) angular acceleration of link 2 */
+        /* (uhs-A18) angular acceleration of link 2 */
         const real alpha_2_x = alpha_1_t - zeta_2_x;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (uhs-A22) acceleration tensor of link 2 */
+        /* (uhs-A20) acceleration tensor of link 2 */
         const real B_2_xy = qdd_2 - W_2_xy;
         const real B_2_yx = -W_2_xy - qdd_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (uhs-N18) inertia moment of the links that turn with link 2, about their reference points */
+        /* (uhs-N27) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_x = B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
         const real mu_2_y = B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz -
             J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y;
         const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 -
             B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (uhs-A24) angular acceleration of link 3 */
+        /* (uhs-A22) angular acceleration of link 3 */
         const real alpha_3_x = zeta_3_x + alpha_2_y*c_3_t - qdd_2*s_3;
         const real alpha_3_y = -zeta_3_y - alpha_2_y*s_3 - c_3_t*qdd_2;
         const real alpha_3_z = alpha_2_x + inv_uhs_joint3_pitch*rel_z;
-        /* (uhs-A27) acceleration tensor of link 3 */
+        /* (uhs-A25) acceleration tensor of link 3 */
         const real B_3_xy = W_3_xy - alpha_3_z;
         const real B_3_xz = W_3_xz + alpha_3_y;
         const real B_3_yx = W_3_xy + alpha_3_z;
         const real B_3_yz = W_3_yz - alpha_3_x;
         const real B_3_zx = W_3_xz - alpha_3_y;
         const real B_3_zy = W_3_yz + alpha_3_x;
-        /* (uhs-N10) inertia moment of the links that turn with link 3, about their reference points */
+        /* (uhs-N20) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xy + B_3_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) +
             acc_3_z*h_3_z - B_3_yz*Sigma_3_zz - B_3_zx*J_3_yz - acc_3_y*h_3_x;
         const real mu_3_y = B_3_xz*Sigma_3_zz + B_3_zy*J_3_yz + acc_3_x*h_3_x - B_3_xy*J_3_xz -
             B_3_zx*Sigma_3_xx - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_y;
         const real mu_3_z = B_3_xz*J_3_xz + B_3_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) +
             acc_3_y*h_3_y - B_3_xy*Sigma_3_yy - B_3_yz*J_3_xy - acc_3_x*h_3_z;
-        /* (uhs-N21) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (uhs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_x = mu_2_x + mu_3_z;
         const real N_2_y = mu_2_y + c_3_t*mu_3_x - mu_3_y*s_3;
         const real N_2_z = mu_2_z + c_3_t*mu_3_y + mu_3_x*s_3;
-        /* (uhs-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (uhs-N37) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = N_2_z*inv_root_2;
         const real G_t_2 = inv_v_1_r0_y*(G_t*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2);
-        /* (uhs-N33) leg force on the platform without actuation and without the mass at the connection
+        /* (uhs-N40) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = G_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_z - B_3_xz*h_3_x -
             G_t*c_3_t;
         const real c_y = G_t*s_3 + G_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_yx*h_3_y -
             B_3_yz*h_3_x;
-        const real c_z = h_3_x*(W_3_t + W_3_t_2) - B_3_zx*h_3_y - B_3_zy*h_3_z -
-            inv_uhs_joint3_pitch*mu_3_z;
+        const real c_z = W_3_zz*h_3_x - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z;
         const real c_in_base_x = axis_x_uhs_axes3_x*c_x + axis_y_uhs_axes3_in_base_x*c_y +
             axis_z_x*c_z;
         const real c_in_base_y = axis_x_uhs_axes3_y*c_x + axis_y_uhs_axes3_in_base_y*c_y +
@@ -3707,7 +3647,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 18, w, code, rates);
 }
 
-/* ---- joint_accelerations: 900 mul, 552 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- joint_accelerations: 876 mul, 546 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3965,18 +3905,15 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t leg, size_t l
         const real beta_3_y = zeta_2_t_2 - omega_2_r1_x*qd_3;
         /* (uhs-V16) angular velocity of link 3 */
         const real omega_3_z = omega_1_t + qd_3;
+        /* (uhs-V17) centripetal tensor of link 3 */
+        const real W_3_zz = omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y;
         /* (uhs-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_y*uhs_joint3_offset_x;
-        const real bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x;
-        const real bias_t_3 = omega_2_r1_y*x_3_x;
-        const real bias_t_4 = omega_2_r1_x*x_3_x;
-        const real bias_t_5 = 2*qd_3*uhs_joint3_pitch;
-        const real bias_x = beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z +
-            bias_t_5*omega_2_r1_y + uhs_joint3_offset_x*zeta_2_t_2;
-        const real bias_y = bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t -
-            beta_3_x*x_3_x - bias_t_5*omega_2_r1_x;
-        const real bias_z = -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y -
-            bias_t_4*omega_2_r1_x;
+        const real bias_t = 2*qd_3*uhs_joint3_pitch;
+        const real bias_x = bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 +
+            omega_1_t*omega_2_r1_x) + x_3_x*(beta_3_y + omega_2_r1_x*omega_3_z);
+        const real bias_y = uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) +
+            x_3_x*(omega_2_r1_y*omega_3_z - beta_3_x) - bias_t*omega_2_r1_x;
+        const real bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x;
         /* (uhs-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -4051,7 +3988,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 18, w, code, accelerations);
 }
 
-/* ---- legs: 1584 mul, 1164 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- legs: 1536 mul, 1152 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4361,18 +4298,14 @@ INLINE void legs_legs_uhs(const prepared *m, size_t leg, size_t legs, const legs
         const real W_3_xy = omega_2_r1_x*omega_2_r1_y;
         const real W_3_xz = omega_2_r1_x*omega_3_z;
         const real W_3_yz = omega_2_r1_y*omega_3_z;
+        const real W_3_zz = W_3_t + W_3_t_2;
         /* (uhs-A7) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = omega_2_r1_y*uhs_joint3_offset_x;
-        const real bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x;
-        const real bias_t_3 = omega_2_r1_y*x_3_x;
-        const real bias_t_4 = omega_2_r1_x*x_3_x;
-        const real bias_t_5 = 2*qd_3*uhs_joint3_pitch;
-        const real bias_x = beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z +
-            bias_t_5*omega_2_r1_y + uhs_joint3_offset_x*zeta_2_t_2;
-        const real bias_y = bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t -
-            beta_3_x*x_3_x - bias_t_5*omega_2_r1_x;
-        const real bias_z = -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y -
-            bias_t_4*omega_2_r1_x;
+        const real bias_t = 2*qd_3*uhs_joint3_pitch;
+        const real bias_x = bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 +
+            omega_1_t*omega_2_r1_x) + x_3_x*(W_3_xz + beta_3_y);
+        const real bias_y = uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) +
+            x_3_x*(W_3_yz - beta_3_x) - bias_t*omega_2_r1_x;
+        const real bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x;
         /* (uhs-V9) reciprocal vector 3 */
         const real w_3_t = axis_z_x*inv_uhs_joint3_pitch;
         const real w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch;
@@ -4407,57 +4340,56 @@ INLINE void legs_legs_uhs(const prepared *m, size_t leg, size_t legs, const legs
         /* (uhs-A16) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_2;
         const real alpha_1_t_2 = c_2*qdd_1;
-        /* (uhs-A19) angular acceleration of link 2 */
+        /* (uhs-A18) angular acceleration of link 2 */
         const real alpha_2_x = alpha_1_t - zeta_2_x;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (uhs-A22) acceleration tensor of link 2 */
+        /* (uhs-A20) acceleration tensor of link 2 */
         const real B_2_xy = qdd_2 - W_2_xy;
         const real B_2_yx = -W_2_xy - qdd_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (uhs-N18) inertia moment of the links that turn with link 2, about their reference points */
+        /* (uhs-N27) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_x = B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy +
             Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3);
         const real mu_2_y = B_2_xy*J_2_yz + g_r1_x*h_2_x - B_2_zx*Sigma_2_xx - B_2_zy*J_2_xz -
             J_2_xy*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_y;
         const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 -
             B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (uhs-A24) angular acceleration of link 3 */
+        /* (uhs-A22) angular acceleration of link 3 */
         const real alpha_3_x = zeta_3_x + alpha_2_y*c_3_t - qdd_2*s_3;
         const real alpha_3_y = -zeta_3_y - alpha_2_y*s_3 - c_3_t*qdd_2;
         const real alpha_3_z = alpha_2_x + inv_uhs_joint3_pitch*rel_z;
-        /* (uhs-A27) acceleration tensor of link 3 */
+        /* (uhs-A25) acceleration tensor of link 3 */
         const real B_3_xy = W_3_xy - alpha_3_z;
         const real B_3_xz = W_3_xz + alpha_3_y;
         const real B_3_yx = W_3_xy + alpha_3_z;
         const real B_3_yz = W_3_yz - alpha_3_x;
         const real B_3_zx = W_3_xz - alpha_3_y;
         const real B_3_zy = W_3_yz + alpha_3_x;
-        /* (uhs-N10) inertia moment of the links that turn with link 3, about their reference points */
+        /* (uhs-N20) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xy + B_3_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) +
             acc_3_z*h_3_z - B_3_yz*Sigma_3_zz - B_3_zx*J_3_yz - acc_3_y*h_3_x;
         const real mu_3_y = B_3_xz*Sigma_3_zz + B_3_zy*J_3_yz + acc_3_x*h_3_x - B_3_xy*J_3_xz -
             B_3_zx*Sigma_3_xx - J_3_xy*(W_3_t - W_3_t_3) - acc_3_z*h_3_y;
         const real mu_3_z = B_3_xz*J_3_xz + B_3_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) +
             acc_3_y*h_3_y - B_3_xy*Sigma_3_yy - B_3_yz*J_3_xy - acc_3_x*h_3_z;
-        /* (uhs-N21) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (uhs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_x = mu_2_x + mu_3_z;
         const real N_2_y = mu_2_y + c_3_t*mu_3_x - mu_3_y*s_3;
         const real N_2_z = mu_2_z + c_3_t*mu_3_y + mu_3_x*s_3;
-        /* (uhs-N30) force at the connection point that balances the leg's inertia and weight along all
+        /* (uhs-N37) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = N_2_z*inv_root_2;
         const real G_t_2 = inv_v_1_r0_y*(G_t*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2);
-        /* (uhs-N33) leg force on the platform without actuation and without the mass at the connection
+        /* (uhs-N40) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = G_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_z - B_3_xz*h_3_x -
             G_t*c_3_t;
         const real c_y = G_t*s_3 + G_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_yx*h_3_y -
             B_3_yz*h_3_x;
-        const real c_z = h_3_x*(W_3_t + W_3_t_2) - B_3_zx*h_3_y - B_3_zy*h_3_z -
-            inv_uhs_joint3_pitch*mu_3_z;
-        /* (uhs-N38) leg force on the platform without actuation, the last link's mass included */
+        const real c_z = W_3_zz*h_3_x - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z;
+        /* (uhs-N45) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_3_x*uhs_link3_mass;
         const real c_true_y = c_y - acc_3_y*uhs_link3_mass;
         const real c_true_z = c_z - acc_3_z*uhs_link3_mass;

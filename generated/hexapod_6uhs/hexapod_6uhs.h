@@ -93,17 +93,17 @@ typedef struct {
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
             h_star_z, m_star;
     /* legs of type uhs */
-    hexapod_6uhs_real J_2_xx[6], J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_3_xx[6],
-            J_3_xy[6], J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], Sigma_2_xx[6], Sigma_2_yy[6],
+    hexapod_6uhs_real J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_3_xx[6], J_3_xy[6],
+            J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], Jc_2_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
             Sigma_2_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], b_r0_y[6],
-            b_r0_z[6], branch_1[6], branch_2[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_2_x[6], h_2_y[6],
-            h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], inv_uhs_joint3_pitch[6], size_[6], size_t_6[6],
-            uhs_base_frame_xx[6], uhs_base_frame_xy[6], uhs_base_frame_xz[6], uhs_base_frame_yx[6],
-            uhs_base_frame_yy[6], uhs_base_frame_yz[6], uhs_base_frame_zx[6], uhs_base_frame_zy[6],
-            uhs_base_frame_zz[6], uhs_base_point_x[6], uhs_base_point_y[6], uhs_base_point_z[6],
-            uhs_joint3_offset_x[6], uhs_joint3_pitch[6], uhs_link2_mass[6], uhs_link3_mass[6],
-            uhs_platform_joint_offset_x[6], uhs_platform_point_x[6], uhs_platform_point_y[6],
-            uhs_platform_point_z[6];
+            b_r0_z[6], branch_1[6], branch_2[6], d_G_t[6], d_phi_3_t[6], d_phi_3_t_2[6], g_r0_x[6],
+            g_r0_y[6], g_r0_z[6], h_2_x[6], h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6],
+            inv_uhs_joint3_pitch[6], size_[6], size_t_6[6], uhs_base_frame_xx[6],
+            uhs_base_frame_xy[6], uhs_base_frame_xz[6], uhs_base_frame_yx[6], uhs_base_frame_yy[6],
+            uhs_base_frame_yz[6], uhs_base_frame_zx[6], uhs_base_frame_zy[6], uhs_base_frame_zz[6],
+            uhs_base_point_x[6], uhs_base_point_y[6], uhs_base_point_z[6], uhs_joint3_offset_x[6],
+            uhs_joint3_pitch[6], uhs_link2_mass[6], uhs_link3_mass[6], uhs_platform_joint_offset_x[6],
+            uhs_platform_point_x[6], uhs_platform_point_y[6], uhs_platform_point_z[6];
 } hexapod_6uhs_model;
 
 extern const hexapod_6uhs_params hexapod_6uhs_default_params;
@@ -115,14 +115,13 @@ extern const hexapod_6uhs_real hexapod_6uhs_HOME_Q[HEXAPOD_6UHS_NJ];
    model is all NaN. */
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model);
 
-/* Inertia matrix M. 1809 mul, 1257 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV).
-   */
+/* Inertia matrix M. 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
 int hexapod_6uhs_M(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, hexapod_6uhs_real
     *M);
 size_t hexapod_6uhs_M_batch(const hexapod_6uhs_model *model, size_t n, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *M, int *status);
 
-/* Velocity and gravity terms Z. 1587 mul, 1176 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 1539 mul, 1164 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int hexapod_6uhs_Z(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *Z);
@@ -136,7 +135,7 @@ int hexapod_6uhs_H(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, 
 size_t hexapod_6uhs_H_batch(const hexapod_6uhs_model *model, size_t n, const hexapod_6uhs_real *X,
     hexapod_6uhs_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 3063 mul, 2235 add, 24 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2547 mul, 1917 add, 24 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6uhs_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const
     hexapod_6uhs_real *V, hexapod_6uhs_real *M, hexapod_6uhs_real *Z, hexapod_6uhs_real *H);
@@ -158,7 +157,7 @@ int hexapod_6uhs_joint_rates(const hexapod_6uhs_model *model, const hexapod_6uhs
 size_t hexapod_6uhs_joint_rates_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, hexapod_6uhs_real *rates, int *status);
 
-/* Accelerations of all joints. 900 mul, 552 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 876 mul, 546 add, 24 div, 12 sqrt, 12 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int hexapod_6uhs_joint_accelerations(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
     const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *accelerations);
@@ -166,7 +165,7 @@ size_t hexapod_6uhs_joint_accelerations_batch(const hexapod_6uhs_model *model, s
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A,
     hexapod_6uhs_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 1731 mul, 1299 add, 24 div, 12 sqrt, 12
+/* Actuator forces tau for the acceleration A, by Eq. 3. 1683 mul, 1287 add, 24 div, 12 sqrt, 12
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or
    NULL). Out: tau (NU). */
 int hexapod_6uhs_inverse_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -176,7 +175,7 @@ size_t hexapod_6uhs_inverse_dynamics_batch(const hexapod_6uhs_model *model, size
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 3063 mul, 2235 add, 24 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2547 mul, 1917 add, 24 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hexapod_6uhs_forward_dynamics(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
@@ -194,7 +193,7 @@ size_t hexapod_6uhs_complete_acceleration_batch(const hexapod_6uhs_model *model,
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A,
     hexapod_6uhs_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 1584 mul, 1164 add, 24 div,
+/* Force of each leg on the platform at its platform joint, base axes. 1536 mul, 1152 add, 24 div,
    12 sqrt, 12 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: forces (6 x 3). */
 int hexapod_6uhs_leg_reactions(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X, const

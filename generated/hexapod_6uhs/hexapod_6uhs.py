@@ -420,10 +420,17 @@ def _prepare(p):
     uhs_link3_inertia_yz - uhs_link3_centre_of_mass_y*uhs_link3_centre_of_mass_z*uhs_link3_mass
     )
     J_3_zz = uhs_link3_inertia_zz - uhs_link3_mass*(J_3_t_3 - J_3_t_4)
+    # (uhs-N12) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_xx = J_2_xx + J_3_xx
     # (uhs-G5) first moment of link 3 about the connection point
     h_3_x = rho_tip_3_x*uhs_link3_mass
     h_3_y = uhs_link3_centre_of_mass_y*uhs_link3_mass
     h_3_z = uhs_link3_centre_of_mass_z*uhs_link3_mass
+    # (uhs-N38) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_t = J_3_xx*inv_uhs_joint3_pitch*inv_uhs_joint3_pitch
+    # (uhs-N6) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    d_phi_3_t = h_3_z*inv_uhs_joint3_pitch
+    d_phi_3_t_2 = h_3_y*inv_uhs_joint3_pitch
     # (L2) first moment about the platform origin
     h_star_t_4 = uhs_link3_mass*uhs_platform_point_x
     h_star_t_5 = uhs_link3_mass*uhs_platform_point_y
@@ -449,15 +456,15 @@ def _prepare(p):
     h_2_x = uhs_link2_centre_of_mass_x*uhs_link2_mass
     h_2_y = uhs_link2_centre_of_mass_y*uhs_link2_mass
     h_2_z = uhs_link2_centre_of_mass_z*uhs_link2_mass
-    # (uhs-N16) half the trace of that inertia tensor
+    # (uhs-N25) half the trace of that inertia tensor
     trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (uhs-N17) second moment of mass of the links that turn with link 2
+    # (uhs-N26) second moment of mass of the links that turn with link 2
     Sigma_2_xx = trace_J_2 - J_2_xx
     Sigma_2_yy = trace_J_2 - J_2_zz
     Sigma_2_zz = trace_J_2 - J_2_yy
-    # (uhs-N8) half the trace of that inertia tensor
+    # (uhs-N18) half the trace of that inertia tensor
     trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (uhs-N9) second moment of mass of the links that turn with link 3
+    # (uhs-N19) second moment of mass of the links that turn with link 3
     Sigma_3_xx = trace_J_3 - J_3_yy
     Sigma_3_yy = trace_J_3 - J_3_zz
     Sigma_3_zz = trace_J_3 - J_3_xx
@@ -527,7 +534,6 @@ def _prepare(p):
     }
     legs = {
         "uhs": {
-            "J_2_xx": np.broadcast_to(J_2_xx, _uhs),
             "J_2_xy": np.broadcast_to(J_2_xy, _uhs),
             "J_2_xz": np.broadcast_to(J_2_xz, _uhs),
             "J_2_yy": np.broadcast_to(J_2_yy, _uhs),
@@ -539,6 +545,7 @@ def _prepare(p):
             "J_3_yy": np.broadcast_to(J_3_yy, _uhs),
             "J_3_yz": np.broadcast_to(J_3_yz, _uhs),
             "J_3_zz": np.broadcast_to(J_3_zz, _uhs),
+            "Jc_2_xx": np.broadcast_to(Jc_2_xx, _uhs),
             "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _uhs),
             "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _uhs),
             "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _uhs),
@@ -550,6 +557,9 @@ def _prepare(p):
             "b_r0_z": np.broadcast_to(b_r0_z, _uhs),
             "branch_1": np.broadcast_to(branch_1, _uhs),
             "branch_2": np.broadcast_to(branch_2, _uhs),
+            "d_G_t": np.broadcast_to(d_G_t, _uhs),
+            "d_phi_3_t": np.broadcast_to(d_phi_3_t, _uhs),
+            "d_phi_3_t_2": np.broadcast_to(d_phi_3_t_2, _uhs),
             "g_r0_x": np.broadcast_to(g_r0_x, _uhs),
             "g_r0_y": np.broadcast_to(g_r0_y, _uhs),
             "g_r0_z": np.broadcast_to(g_r0_z, _uhs),
@@ -735,7 +745,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 3063 mul, 2235 add, 24 div, 12 sqrt, 12 trig
+# dynamics: 2547 mul, 1917 add, 24 div, 12 sqrt, 12 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -845,14 +855,14 @@ def _dynamics_uhs(c, k, x, s, f):
     sin = f.sin
     cos = f.cos
     (
-    J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-        J_3_zz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
-        inv_uhs_joint3_pitch, size, size_t_6, uhs_base_frame_xx, uhs_base_frame_xy,
-        uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
-        uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
-        uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x, uhs_joint3_pitch,
-        uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
+    J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
+        Jc_2_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, branch_1,
+        branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z,
+        h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size, size_t_6, uhs_base_frame_xx,
+        uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy,
+        uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz,
+        uhs_base_point_x, uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x,
+        uhs_joint3_pitch, uhs_platform_joint_offset_x, uhs_platform_point_x, uhs_platform_point_y,
         uhs_platform_point_z,
     ) = k
     (
@@ -900,9 +910,10 @@ def _dynamics_uhs(c, k, x, s, f):
     # (uhs-K26) sine of the angle of joint 3 from its reference direction
     s_3 = cos(q_3)
     # (uhs-V4) velocity of the connection point per rate of joint 1
-    v_1_t = c_2*s_3
-    v_1_t_2 = root_2*v_1_t
-    v_1_t_3 = c_2*c_3_t*root_2
+    v_1_t = c_2*c_3_t
+    v_1_t_2 = c_2*s_3
+    v_1_t_3 = root_2*v_1_t_2
+    v_1_t_4 = root_2*v_1_t
     # (uhs-V7) reciprocal vector 1
     inv_root_2 = 1.0/root_2
     axis_z_x = S_x*inv_root_2
@@ -919,112 +930,83 @@ def _dynamics_uhs(c, k, x, s, f):
     axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
     axis_y_uhs_axes3_in_base_x = (
     axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-        uhs_base_frame_xz*v_1_t
+        uhs_base_frame_xz*v_1_t_2
     )
     axis_y_uhs_axes3_in_base_y = (
     axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-        uhs_base_frame_yz*v_1_t
+        uhs_base_frame_yz*v_1_t_2
     )
     axis_y_uhs_axes3_in_base_z = (
     axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-        uhs_base_frame_zz*v_1_t
+        uhs_base_frame_zz*v_1_t_2
     )
     axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
     axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
     axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+    # (uhs-G6) inertia tensor of link 3 about the connection point
+    J_3_t = J_3_yz*s_3
+    _x = J_3_yy*c_3_t - J_3_t
+    J_3_t_2 = J_3_yz*c_3_t
+    _x_2 = J_3_t_2 - J_3_zz*s_3
+    _x_3 = J_3_xy*c_3_t - J_3_xz*s_3
+    _y = J_3_xy*s_3 + J_3_xz*c_3_t
+    # (uhs-N12) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_xy = _x_3 - J_2_xz
+    _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_3 + _x_2*c_3_t - J_2_yz)
     # (uhs-V4) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_3_t*v_1_t_2 - s_3*v_1_t_3
-    v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2
+    v_1_r0_x = c_3_t*v_1_t_3 - s_3*v_1_t_4
+    v_1_r0_y = c_3_t*v_1_t_4 + s_3*v_1_t_3
     # (uhs-V7) reciprocal vector 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     w_1_t_2 = inv_v_1_r0_y*s_3
     w_1_t_3 = c_3_t*inv_v_1_r0_y
-    w_1_r0_x = c_3_t*w_1_t_2 - s_3*w_1_t_3
-    w_1_r0_y = c_3_t*w_1_t_3 + s_3*w_1_t_2
-    w_1_t_4 = s_2*w_1_r0_x
-    w_1_t_5 = c_2*w_1_r0_x
     # (uhs-V8) reciprocal vector 2
     w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x
     _r1_x = c_3_t*inv_root_2 - s_3*w_2_t
     _r1_y = -c_3_t*w_2_t - inv_root_2*s_3
-    # (uhs-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = s_2*w_1_t_4
-    d_alpha_1_t_2 = c_2*w_1_t_4
-    d_alpha_1_t_3 = s_2*w_1_t_5
-    d_alpha_1_t_4 = c_2*w_1_t_5
-    d_alpha_1_t_5 = s_2*w_1_r0_y
-    d_alpha_1_t_6 = c_2*w_1_r0_y
-    _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2
-    _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2
-    _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2
-    _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2
-    # (uhs-V8) reciprocal vector 2
-    w_2_r0_x = _r1_x*c_3_t - _r1_y*s_3
-    w_2_r0_y = _r1_x*s_3 + _r1_y*c_3_t
-    # (uhs-A20) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = _y_2*c_3_t + s_3*w_2_r0_x
-    _y_3 = c_3_t*w_2_r0_x - _y_2*s_3
-    _x_4 = s_3*w_2_r0_y - c_3_t*d_alpha_1_t_6
-    _y_4 = c_3_t*w_2_r0_y + d_alpha_1_t_6*s_3
-    d_alpha_2_t = _x_2*c_3_t
-    d_alpha_2_t_2 = _x_2*s_3
-    _x_5 = _x_3*c_3_t + _x_4*s_3
-    _y_5 = _x_4*c_3_t - _x_3*s_3
-    _x_6 = _y_3*c_3_t + _y_4*s_3
-    _y_6 = _y_4*c_3_t - _y_3*s_3
-    _x_7 = _y*c_3_t + d_alpha_1_t_5*s_3
-    _y_7 = c_3_t*d_alpha_1_t_5 - _y*s_3
-    # (uhs-A25) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_zz = _x + inv_uhs_joint3_pitch
-    # (uhs-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xy*_x_7 + J_3_yy*_x_5 + J_3_yz*_x_6
-    d_mu_3_t_2 = J_3_xz*_y_7 + J_3_yz*_y_5 + J_3_zz*_y_6
-    d_mu_3_t_3 = J_3_xx*d_alpha_3_zz + J_3_xy*d_alpha_2_t - J_3_xz*d_alpha_2_t_2
-    d_mu_3_xy = J_3_xy*_y_7 + J_3_yy*_y_5 + J_3_yz*_y_6 - h_3_x
-    d_mu_3_xz = h_3_z + J_3_xy*d_alpha_3_zz + J_3_yy*d_alpha_2_t - J_3_yz*d_alpha_2_t_2
-    d_mu_3_yx = h_3_x + J_3_xz*_x_7 + J_3_yz*_x_5 + J_3_zz*_x_6
-    d_mu_3_yz = J_3_xz*d_alpha_3_zz + J_3_yz*d_alpha_2_t - h_3_y - J_3_zz*d_alpha_2_t_2
-    d_mu_3_zx = J_3_xx*_x_7 + J_3_xy*_x_5 + J_3_xz*_x_6 - h_3_z
-    d_mu_3_zy = h_3_y + J_3_xx*_y_7 + J_3_xy*_y_5 + J_3_xz*_y_6
-    _x_8 = c_3_t*d_mu_3_t - d_mu_3_yx*s_3
-    _y_8 = c_3_t*d_mu_3_yx + d_mu_3_t*s_3
-    _x_9 = c_3_t*d_mu_3_xy - d_mu_3_t_2*s_3
-    _y_9 = c_3_t*d_mu_3_t_2 + d_mu_3_xy*s_3
-    # (uhs-N22) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_zx = J_2_xy*_x + c_3_t*d_mu_3_yz + d_mu_3_xz*s_3 - J_2_yz*_x_2
-    d_N_2_zy = J_2_xy*_y + J_2_yy*w_2_r0_x + _y_8*c_3_t - J_2_yz*_y_2 - _y_9*s_3
-    d_N_2_zz = (
-    J_2_xy*d_alpha_1_t_5 + J_2_yy*w_2_r0_y + J_2_yz*d_alpha_1_t_6 + _y_8*s_3 + _y_9*c_3_t
+    # (uhs-G5) first moment of link 3 about the connection point
+    h_3_r1_x = c_3_t*h_3_y - h_3_z*s_3
+    # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = _y_2*inv_root_2
+    d_Gamma_1_t_2 = (
+    s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2) - c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_3_t - _x_2*s_3)) -
+        d_Gamma_1_t*v_1_r0_x
     )
-    # (uhs-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_x = (
-    s_2*(d_mu_3_t_3 + J_2_xx*_x - J_2_xz*_x_2) - c_2*(J_2_zz*_x_2 + c_3_t*d_mu_3_xz - J_2_xz*_x -
-        d_mu_3_yz*s_3)
-    )
-    d_Gamma_1_y = (
-    s_2*(J_2_xx*_y + J_2_xy*w_2_r0_x + c_3_t*d_mu_3_zx - J_2_xz*_y_2 - d_mu_3_zy*s_3) -
-        c_2*(J_2_zz*_y_2 + _x_8*c_3_t - J_2_xz*_y - J_2_yz*w_2_r0_x - _x_9*s_3)
-    )
-    d_Gamma_1_z = (
-    s_2*(J_2_xx*d_alpha_1_t_5 + J_2_xy*w_2_r0_y + J_2_xz*d_alpha_1_t_6 + c_3_t*d_mu_3_zy +
-        d_mu_3_zx*s_3) - c_2*(_x_8*s_3 + _x_9*c_3_t - J_2_xz*d_alpha_1_t_5 - J_2_yz*w_2_r0_y -
-        J_2_zz*d_alpha_1_t_6)
-    )
-    d_Gamma_1_r1_y = c_3_t*d_Gamma_1_z - d_Gamma_1_y*s_3
-    # (uhs-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_r1_y = c_3_t*d_N_2_zz - d_N_2_zy*s_3
-    # (uhs-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_Gamma_1_t_3 = inv_uhs_joint3_pitch*(J_3_xx*s_2 - _x_3*c_2)
+    _r0_y = d_Gamma_1_t_3*s_2 - c_2*d_Gamma_1_t
+    d_Gamma_1_x = c_2*h_3_x + d_Gamma_1_t_2*inv_v_1_r0_y + h_3_r1_x*s_2
+    d_Gamma_1_y = c_3_t*h_3_z + h_3_y*s_3 - c_2*d_Gamma_1_t_3 - d_Gamma_1_t*s_2
+    # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_root_2*(J_2_yy + c_3_t*(J_3_t + J_3_zz*c_3_t) + s_3*(J_3_t_2 + J_3_yy*s_3))
+    d_Gamma_2_t_2 = inv_v_1_r0_y*(_y_2 - d_Gamma_2_t*v_1_r0_x)
+    d_Gamma_2_x = _y*inv_uhs_joint3_pitch - h_3_r1_x
+    d_Gamma_2_y = d_Gamma_2_t + h_3_x
+    # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_r1_x = _r0_y*s_2 - c_2*d_Gamma_1_y
+    d_Gamma_1_r1_y = -_r0_y*c_2 - d_Gamma_1_y*s_2
+    d_Gamma_1_r3_y = c_3_t*d_Gamma_1_x - d_Gamma_1_r1_y*s_3
+    # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_r1_y = c_3_t*d_Gamma_2_t_2 - d_Gamma_2_y*s_3
+    # (uhs-A23) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = s_2*w_1_t_3
+    # (uhs-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    _x_7*h_3_z - _r1_x*(c_3_t*d_N_2_zy + d_N_2_zz*s_3) - _x_6*h_3_x - w_1_t_2*(c_3_t*d_Gamma_1_y +
-        d_Gamma_1_z*s_3)
+    h_3_z*s_2*w_1_t_2 - _r1_x*(c_3_t*d_Gamma_2_y + d_Gamma_2_t_2*s_3) - h_3_x*(_r1_x*c_3_t +
+        v_1_t_2*w_1_t_2) - w_1_t_2*(c_3_t*d_Gamma_1_r1_y + d_Gamma_1_x*s_3)
     )
-    d_c_xy = _y_7*h_3_z - _r1_x*d_Gamma_2_r1_y - _y_6*h_3_x - d_Gamma_1_r1_y*w_1_t_2
-    d_c_xz = d_alpha_2_t_2*h_3_x + d_alpha_3_zz*h_3_z - _r1_x*d_N_2_zx - d_Gamma_1_x*w_1_t_2
-    d_c_yz = d_alpha_2_t*h_3_x - _r1_y*d_N_2_zx - d_Gamma_1_x*w_1_t_3 - d_alpha_3_zz*h_3_y
-    # (uhs-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + _y_7*h_3_y + d_Gamma_1_r1_y*w_1_t_3 - _y_5*h_3_x
+    d_c_xy = (
+    d_alpha_3_t*h_3_z - _r1_x*d_Gamma_2_r1_y - d_Gamma_1_r3_y*w_1_t_2 - h_3_x*(_r1_y*c_3_t +
+        v_1_t_2*w_1_t_3)
+    )
+    d_c_xz = d_phi_3_t - _r1_x*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_2
+    d_c_yz = -d_phi_3_t_2 - _r1_y*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_3
+    # (uhs-N43) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = (
+    d_c_xx + _r1_y*d_Gamma_2_r1_y + d_Gamma_1_r3_y*w_1_t_3 + d_alpha_3_t*h_3_y - h_3_x*(_r1_y*s_3
+        - v_1_t*w_1_t_3)
+    )
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_alpha_2_t*h_3_z + d_alpha_2_t_2*h_3_y + d_mu_3_t_3*inv_uhs_joint3_pitch
+    Q_t_3 = d_G_t + d_c_xx
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = axis_x_uhs_axes3_x*d_c_xy + axis_z_x*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_x
     Q_t_6 = axis_x_uhs_axes3_y*d_c_xy + axis_z_y*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_y
@@ -1122,23 +1104,18 @@ def _dynamics_uhs(c, k, x, s, f):
     W_3_xy = omega_2_r1_x*omega_2_r1_y
     W_3_xz = omega_2_r1_x*omega_3_z
     W_3_yz = omega_2_r1_y*omega_3_z
+    W_3_zz = W_3_t + W_3_t_2
     # (uhs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = omega_2_r1_y*uhs_joint3_offset_x
-    bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x
-    bias_t_3 = omega_2_r1_y*x_3_x
-    bias_t_4 = omega_2_r1_x*x_3_x
-    bias_t_5 = 2.0*qd_3*uhs_joint3_pitch
+    bias_t = 2.0*qd_3*uhs_joint3_pitch
     bias_x = (
-    beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z + bias_t_5*omega_2_r1_y +
-        uhs_joint3_offset_x*zeta_2_t_2
+    bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
+        x_3_x*(W_3_xz + beta_3_y)
     )
     bias_y = (
-    bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t - beta_3_x*x_3_x -
-        bias_t_5*omega_2_r1_x
+    uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
+        bias_t*omega_2_r1_x
     )
-    bias_z = (
-    -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y - bias_t_4*omega_2_r1_x
-    )
+    bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
     # (uhs-A1) centripetal acceleration of the connection point
     u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
     u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
@@ -1156,18 +1133,18 @@ def _dynamics_uhs(c, k, x, s, f):
     # (uhs-A11) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = inv_v_1_r0_y*(c_3_t*rel_o_y + rel_o_x*s_3)
     qdd_2_o = inv_root_2*(qdd_1_o*v_1_r0_x + rel_o_y*s_3 - c_3_t*rel_o_x)
-    # (uhs-A18) remainder without the acceleration in: angular acceleration of link 1
+    # (uhs-A17) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o
-    # (uhs-A21) remainder without the acceleration in: angular acceleration of link 2
+    # (uhs-A19) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (uhs-A23) acceleration tensor of link 2
+    # (uhs-A21) acceleration tensor of link 2
     B_2_o_xy = qdd_2_o - W_2_xy
     B_2_o_yx = -W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x
-    # (uhs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (uhs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_x = (
     B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_o_t +
         g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
@@ -1184,18 +1161,18 @@ def _dynamics_uhs(c, k, x, s, f):
     acc_3_o_x = u_1_tip_x - c_3_t*g_r3_y - g_r1_x*s_3
     acc_3_o_y = u_1_tip_y + g_r3_y*s_3 - c_3_t*g_r1_x
     acc_3_o_z = u_1_tip_z - g_r3_x
-    # (uhs-A26) remainder without the acceleration in: angular acceleration of link 3
+    # (uhs-A24) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3
     alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o
     alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z
-    # (uhs-A28) acceleration tensor of link 3
+    # (uhs-A26) acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
     B_3_o_yz = W_3_yz - alpha_3_o_x
     B_3_o_zx = W_3_xz - alpha_3_o_y
     B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (uhs-N12) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (uhs-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xy + B_3_o_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_z -
         B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_yz - acc_3_o_y*h_3_x
@@ -1208,22 +1185,20 @@ def _dynamics_uhs(c, k, x, s, f):
     B_3_o_xz*J_3_xz + B_3_o_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_y -
         B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xy - acc_3_o_x*h_3_z
     )
-    # (uhs-N23) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (uhs-N30) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_o_x = mu_2_o_x + mu_3_o_z
     N_2_o_y = mu_2_o_y + c_3_t*mu_3_o_x - mu_3_o_y*s_3
     N_2_o_z = mu_2_o_z + c_3_t*mu_3_o_y + mu_3_o_x*s_3
-    # (uhs-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (uhs-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = N_2_o_z*inv_root_2
     G_o_t_2 = inv_v_1_r0_y*(G_o_t*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2)
-    # (uhs-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (uhs-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     G_o_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_z - B_3_o_xz*h_3_x - G_o_t*c_3_t
     )
     c_o_y = G_o_t*s_3 + G_o_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_y - B_3_o_yz*h_3_x
-    c_o_z = (
-    h_3_x*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_o_z
-    )
-    # (uhs-N37) velocity and gravity terms of the leg force
+    c_o_z = W_3_zz*h_3_x - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_o_z
+    # (uhs-N44) velocity and gravity terms of the leg force
     U_in_base_x = -axis_x_uhs_axes3_x*c_o_x - axis_y_uhs_axes3_in_base_x*c_o_y - axis_z_x*c_o_z
     U_in_base_y = -axis_x_uhs_axes3_y*c_o_x - axis_y_uhs_axes3_in_base_y*c_o_y - axis_z_y*c_o_z
     U_in_base_z = -axis_x_uhs_axes3_z*c_o_x - axis_y_uhs_axes3_in_base_z*c_o_y - axis_z_z*c_o_z
@@ -1299,7 +1274,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 1809 mul, 1257 add, 24 div, 12 sqrt, 12 trig
+# M: 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1372,13 +1347,13 @@ def _M_uhs(c, k, x, s, f):
     sin = f.sin
     cos = f.cos
     (
-    J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-        J_3_zz, branch_1, branch_2, h_3_x, h_3_y, h_3_z, inv_uhs_joint3_pitch, size, size_t_6,
-        uhs_base_frame_xx, uhs_base_frame_xy, uhs_base_frame_xz, uhs_base_frame_yx,
-        uhs_base_frame_yy, uhs_base_frame_yz, uhs_base_frame_zx, uhs_base_frame_zy,
-        uhs_base_frame_zz, uhs_base_point_x, uhs_base_point_y, uhs_base_point_z,
-        uhs_joint3_offset_x, uhs_platform_joint_offset_x, uhs_platform_point_x,
-        uhs_platform_point_y, uhs_platform_point_z,
+    J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz,
+        Jc_2_xx, branch_1, branch_2, d_G_t, d_phi_3_t, d_phi_3_t_2, h_3_x, h_3_y, h_3_z,
+        inv_uhs_joint3_pitch, size, size_t_6, uhs_base_frame_xx, uhs_base_frame_xy,
+        uhs_base_frame_xz, uhs_base_frame_yx, uhs_base_frame_yy, uhs_base_frame_yz,
+        uhs_base_frame_zx, uhs_base_frame_zy, uhs_base_frame_zz, uhs_base_point_x,
+        uhs_base_point_y, uhs_base_point_z, uhs_joint3_offset_x, uhs_platform_joint_offset_x,
+        uhs_platform_point_x, uhs_platform_point_y, uhs_platform_point_z,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (uhs-K1) from the base point to the connection point
@@ -1422,9 +1397,10 @@ def _M_uhs(c, k, x, s, f):
     # (uhs-K26) sine of the angle of joint 3 from its reference direction
     s_3 = cos(q_3)
     # (uhs-V4) velocity of the connection point per rate of joint 1
-    v_1_t = c_2*s_3
-    v_1_t_2 = root_2*v_1_t
-    v_1_t_3 = c_2*c_3_t*root_2
+    v_1_t = c_2*c_3_t
+    v_1_t_2 = c_2*s_3
+    v_1_t_3 = root_2*v_1_t_2
+    v_1_t_4 = root_2*v_1_t
     # (uhs-V7) reciprocal vector 1
     inv_root_2 = 1.0/root_2
     axis_z_x = S_x*inv_root_2
@@ -1441,111 +1417,83 @@ def _M_uhs(c, k, x, s, f):
     axis_y_uhs_axes3_r4_y = c_3_t*s_1 - c_1*w_1_t
     axis_y_uhs_axes3_in_base_x = (
     axis_y_uhs_axes3_r4_x*uhs_base_frame_xx + axis_y_uhs_axes3_r4_y*uhs_base_frame_xy +
-        uhs_base_frame_xz*v_1_t
+        uhs_base_frame_xz*v_1_t_2
     )
     axis_y_uhs_axes3_in_base_y = (
     axis_y_uhs_axes3_r4_x*uhs_base_frame_yx + axis_y_uhs_axes3_r4_y*uhs_base_frame_yy +
-        uhs_base_frame_yz*v_1_t
+        uhs_base_frame_yz*v_1_t_2
     )
     axis_y_uhs_axes3_in_base_z = (
     axis_y_uhs_axes3_r4_x*uhs_base_frame_zx + axis_y_uhs_axes3_r4_y*uhs_base_frame_zy +
-        uhs_base_frame_zz*v_1_t
+        uhs_base_frame_zz*v_1_t_2
     )
     axis_x_uhs_axes3_x = axis_y_uhs_axes3_in_base_y*axis_z_z - axis_y_uhs_axes3_in_base_z*axis_z_y
     axis_x_uhs_axes3_y = axis_y_uhs_axes3_in_base_z*axis_z_x - axis_y_uhs_axes3_in_base_x*axis_z_z
     axis_x_uhs_axes3_z = axis_y_uhs_axes3_in_base_x*axis_z_y - axis_y_uhs_axes3_in_base_y*axis_z_x
+    # (uhs-G6) inertia tensor of link 3 about the connection point
+    J_3_t = J_3_yz*s_3
+    _x = J_3_yy*c_3_t - J_3_t
+    J_3_t_2 = J_3_yz*c_3_t
+    _x_2 = J_3_t_2 - J_3_zz*s_3
+    _x_3 = J_3_xy*c_3_t - J_3_xz*s_3
+    _y = J_3_xy*s_3 + J_3_xz*c_3_t
+    # (uhs-N12) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_xy = _x_3 - J_2_xz
+    _y_2 = s_2*(J_2_xy + _y) - c_2*(_x*s_3 + _x_2*c_3_t - J_2_yz)
     # (uhs-V4) velocity of the connection point per rate of joint 1
-    v_1_r0_y = c_3_t*v_1_t_3 + s_3*v_1_t_2
+    v_1_r0_x = c_3_t*v_1_t_3 - s_3*v_1_t_4
+    v_1_r0_y = c_3_t*v_1_t_4 + s_3*v_1_t_3
     # (uhs-V7) reciprocal vector 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     w_1_t_2 = inv_v_1_r0_y*s_3
     w_1_t_3 = c_3_t*inv_v_1_r0_y
-    w_1_r0_x = c_3_t*w_1_t_2 - s_3*w_1_t_3
-    w_1_r0_y = c_3_t*w_1_t_3 + s_3*w_1_t_2
-    w_1_t_4 = s_2*w_1_r0_x
-    w_1_t_5 = c_2*w_1_r0_x
     # (uhs-V8) reciprocal vector 2
-    w_2_t = inv_root_2*inv_v_1_r0_y*(c_3_t*v_1_t_2 - s_3*v_1_t_3)
+    w_2_t = inv_root_2*inv_v_1_r0_y*v_1_r0_x
     _r1_x = c_3_t*inv_root_2 - s_3*w_2_t
     _r1_y = -c_3_t*w_2_t - inv_root_2*s_3
-    # (uhs-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = s_2*w_1_t_4
-    d_alpha_1_t_2 = c_2*w_1_t_4
-    d_alpha_1_t_3 = s_2*w_1_t_5
-    d_alpha_1_t_4 = c_2*w_1_t_5
-    d_alpha_1_t_5 = s_2*w_1_r0_y
-    d_alpha_1_t_6 = c_2*w_1_r0_y
-    _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2
-    _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2
-    _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2
-    _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2
-    # (uhs-V8) reciprocal vector 2
-    w_2_r0_x = _r1_x*c_3_t - _r1_y*s_3
-    w_2_r0_y = _r1_x*s_3 + _r1_y*c_3_t
-    # (uhs-A20) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = _y_2*c_3_t + s_3*w_2_r0_x
-    _y_3 = c_3_t*w_2_r0_x - _y_2*s_3
-    _x_4 = s_3*w_2_r0_y - c_3_t*d_alpha_1_t_6
-    _y_4 = c_3_t*w_2_r0_y + d_alpha_1_t_6*s_3
-    d_alpha_2_t = _x_2*c_3_t
-    d_alpha_2_t_2 = _x_2*s_3
-    _x_5 = _x_3*c_3_t + _x_4*s_3
-    _y_5 = _x_4*c_3_t - _x_3*s_3
-    _x_6 = _y_3*c_3_t + _y_4*s_3
-    _y_6 = _y_4*c_3_t - _y_3*s_3
-    _x_7 = _y*c_3_t + d_alpha_1_t_5*s_3
-    _y_7 = c_3_t*d_alpha_1_t_5 - _y*s_3
-    # (uhs-A25) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_zz = _x + inv_uhs_joint3_pitch
-    # (uhs-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xy*_x_7 + J_3_yy*_x_5 + J_3_yz*_x_6
-    d_mu_3_t_2 = J_3_xz*_y_7 + J_3_yz*_y_5 + J_3_zz*_y_6
-    d_mu_3_t_3 = J_3_xx*d_alpha_3_zz + J_3_xy*d_alpha_2_t - J_3_xz*d_alpha_2_t_2
-    d_mu_3_xy = J_3_xy*_y_7 + J_3_yy*_y_5 + J_3_yz*_y_6 - h_3_x
-    d_mu_3_xz = h_3_z + J_3_xy*d_alpha_3_zz + J_3_yy*d_alpha_2_t - J_3_yz*d_alpha_2_t_2
-    d_mu_3_yx = h_3_x + J_3_xz*_x_7 + J_3_yz*_x_5 + J_3_zz*_x_6
-    d_mu_3_yz = J_3_xz*d_alpha_3_zz + J_3_yz*d_alpha_2_t - h_3_y - J_3_zz*d_alpha_2_t_2
-    d_mu_3_zx = J_3_xx*_x_7 + J_3_xy*_x_5 + J_3_xz*_x_6 - h_3_z
-    d_mu_3_zy = h_3_y + J_3_xx*_y_7 + J_3_xy*_y_5 + J_3_xz*_y_6
-    _x_8 = c_3_t*d_mu_3_t - d_mu_3_yx*s_3
-    _y_8 = c_3_t*d_mu_3_yx + d_mu_3_t*s_3
-    _x_9 = c_3_t*d_mu_3_xy - d_mu_3_t_2*s_3
-    _y_9 = c_3_t*d_mu_3_t_2 + d_mu_3_xy*s_3
-    # (uhs-N22) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_zx = J_2_xy*_x + c_3_t*d_mu_3_yz + d_mu_3_xz*s_3 - J_2_yz*_x_2
-    d_N_2_zy = J_2_xy*_y + J_2_yy*w_2_r0_x + _y_8*c_3_t - J_2_yz*_y_2 - _y_9*s_3
-    d_N_2_zz = (
-    J_2_xy*d_alpha_1_t_5 + J_2_yy*w_2_r0_y + J_2_yz*d_alpha_1_t_6 + _y_8*s_3 + _y_9*c_3_t
+    # (uhs-G5) first moment of link 3 about the connection point
+    h_3_r1_x = c_3_t*h_3_y - h_3_z*s_3
+    # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = _y_2*inv_root_2
+    d_Gamma_1_t_2 = (
+    s_2*(Jc_2_xx*s_2 - Jc_2_xy*c_2) - c_2*(Jc_2_xy*s_2 - c_2*(J_2_zz + _x*c_3_t - _x_2*s_3)) -
+        d_Gamma_1_t*v_1_r0_x
     )
-    # (uhs-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_x = (
-    s_2*(d_mu_3_t_3 + J_2_xx*_x - J_2_xz*_x_2) - c_2*(J_2_zz*_x_2 + c_3_t*d_mu_3_xz - J_2_xz*_x -
-        d_mu_3_yz*s_3)
-    )
-    d_Gamma_1_y = (
-    s_2*(J_2_xx*_y + J_2_xy*w_2_r0_x + c_3_t*d_mu_3_zx - J_2_xz*_y_2 - d_mu_3_zy*s_3) -
-        c_2*(J_2_zz*_y_2 + _x_8*c_3_t - J_2_xz*_y - J_2_yz*w_2_r0_x - _x_9*s_3)
-    )
-    d_Gamma_1_z = (
-    s_2*(J_2_xx*d_alpha_1_t_5 + J_2_xy*w_2_r0_y + J_2_xz*d_alpha_1_t_6 + c_3_t*d_mu_3_zy +
-        d_mu_3_zx*s_3) - c_2*(_x_8*s_3 + _x_9*c_3_t - J_2_xz*d_alpha_1_t_5 - J_2_yz*w_2_r0_y -
-        J_2_zz*d_alpha_1_t_6)
-    )
-    d_Gamma_1_r1_y = c_3_t*d_Gamma_1_z - d_Gamma_1_y*s_3
-    # (uhs-N25) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_r1_y = c_3_t*d_N_2_zz - d_N_2_zy*s_3
-    # (uhs-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_Gamma_1_t_3 = inv_uhs_joint3_pitch*(J_3_xx*s_2 - _x_3*c_2)
+    _r0_y = d_Gamma_1_t_3*s_2 - c_2*d_Gamma_1_t
+    d_Gamma_1_x = c_2*h_3_x + d_Gamma_1_t_2*inv_v_1_r0_y + h_3_r1_x*s_2
+    d_Gamma_1_y = c_3_t*h_3_z + h_3_y*s_3 - c_2*d_Gamma_1_t_3 - d_Gamma_1_t*s_2
+    # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_root_2*(J_2_yy + c_3_t*(J_3_t + J_3_zz*c_3_t) + s_3*(J_3_t_2 + J_3_yy*s_3))
+    d_Gamma_2_t_2 = inv_v_1_r0_y*(_y_2 - d_Gamma_2_t*v_1_r0_x)
+    d_Gamma_2_x = _y*inv_uhs_joint3_pitch - h_3_r1_x
+    d_Gamma_2_y = d_Gamma_2_t + h_3_x
+    # (uhs-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_r1_x = _r0_y*s_2 - c_2*d_Gamma_1_y
+    d_Gamma_1_r1_y = -_r0_y*c_2 - d_Gamma_1_y*s_2
+    d_Gamma_1_r3_y = c_3_t*d_Gamma_1_x - d_Gamma_1_r1_y*s_3
+    # (uhs-N32) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_r1_y = c_3_t*d_Gamma_2_t_2 - d_Gamma_2_y*s_3
+    # (uhs-A23) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = s_2*w_1_t_3
+    # (uhs-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    _x_7*h_3_z - _r1_x*(c_3_t*d_N_2_zy + d_N_2_zz*s_3) - _x_6*h_3_x - w_1_t_2*(c_3_t*d_Gamma_1_y +
-        d_Gamma_1_z*s_3)
+    h_3_z*s_2*w_1_t_2 - _r1_x*(c_3_t*d_Gamma_2_y + d_Gamma_2_t_2*s_3) - h_3_x*(_r1_x*c_3_t +
+        v_1_t_2*w_1_t_2) - w_1_t_2*(c_3_t*d_Gamma_1_r1_y + d_Gamma_1_x*s_3)
     )
-    d_c_xy = _y_7*h_3_z - _r1_x*d_Gamma_2_r1_y - _y_6*h_3_x - d_Gamma_1_r1_y*w_1_t_2
-    d_c_xz = d_alpha_2_t_2*h_3_x + d_alpha_3_zz*h_3_z - _r1_x*d_N_2_zx - d_Gamma_1_x*w_1_t_2
-    d_c_yz = d_alpha_2_t*h_3_x - _r1_y*d_N_2_zx - d_Gamma_1_x*w_1_t_3 - d_alpha_3_zz*h_3_y
-    # (uhs-N36) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + _y_7*h_3_y + d_Gamma_1_r1_y*w_1_t_3 - _y_5*h_3_x
+    d_c_xy = (
+    d_alpha_3_t*h_3_z - _r1_x*d_Gamma_2_r1_y - d_Gamma_1_r3_y*w_1_t_2 - h_3_x*(_r1_y*c_3_t +
+        v_1_t_2*w_1_t_3)
+    )
+    d_c_xz = d_phi_3_t - _r1_x*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_2
+    d_c_yz = -d_phi_3_t_2 - _r1_y*d_Gamma_2_x - d_Gamma_1_r1_x*w_1_t_3
+    # (uhs-N43) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = (
+    d_c_xx + _r1_y*d_Gamma_2_r1_y + d_Gamma_1_r3_y*w_1_t_3 + d_alpha_3_t*h_3_y - h_3_x*(_r1_y*s_3
+        - v_1_t*w_1_t_3)
+    )
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_alpha_2_t*h_3_z + d_alpha_2_t_2*h_3_y + d_mu_3_t_3*inv_uhs_joint3_pitch
+    Q_t_3 = d_G_t + d_c_xx
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = axis_x_uhs_axes3_x*d_c_xy + axis_z_x*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_x
     Q_t_6 = axis_x_uhs_axes3_y*d_c_xy + axis_z_y*d_c_yz - Q_t_2*axis_y_uhs_axes3_in_base_y
@@ -1639,7 +1587,7 @@ def _M_after(c, s, t, f):
     )
 
 
-# Z: 1587 mul, 1176 add, 24 div, 12 sqrt, 12 trig
+# Z: 1539 mul, 1164 add, 24 div, 12 sqrt, 12 trig
 def _Z_before(c, X, V, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
@@ -1875,23 +1823,18 @@ def _Z_uhs(c, k, x, s, f):
     W_3_xy = omega_2_r1_x*omega_2_r1_y
     W_3_xz = omega_2_r1_x*omega_3_z
     W_3_yz = omega_2_r1_y*omega_3_z
+    W_3_zz = W_3_t + W_3_t_2
     # (uhs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = omega_2_r1_y*uhs_joint3_offset_x
-    bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x
-    bias_t_3 = omega_2_r1_y*x_3_x
-    bias_t_4 = omega_2_r1_x*x_3_x
-    bias_t_5 = 2.0*qd_3*uhs_joint3_pitch
+    bias_t = 2.0*qd_3*uhs_joint3_pitch
     bias_x = (
-    beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z + bias_t_5*omega_2_r1_y +
-        uhs_joint3_offset_x*zeta_2_t_2
+    bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
+        x_3_x*(W_3_xz + beta_3_y)
     )
     bias_y = (
-    bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t - beta_3_x*x_3_x -
-        bias_t_5*omega_2_r1_x
+    uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
+        bias_t*omega_2_r1_x
     )
-    bias_z = (
-    -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y - bias_t_4*omega_2_r1_x
-    )
+    bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
     # (uhs-A1) centripetal acceleration of the connection point
     u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
     u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x
@@ -1909,18 +1852,18 @@ def _Z_uhs(c, k, x, s, f):
     # (uhs-A11) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = inv_v_1_r0_y*(c_3_t*rel_o_y + rel_o_x*s_3)
     qdd_2_o = inv_root_2*(qdd_1_o*v_1_r0_x + rel_o_y*s_3 - c_3_t*rel_o_x)
-    # (uhs-A18) remainder without the acceleration in: angular acceleration of link 1
+    # (uhs-A17) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o
-    # (uhs-A21) remainder without the acceleration in: angular acceleration of link 2
+    # (uhs-A19) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (uhs-A23) acceleration tensor of link 2
+    # (uhs-A21) acceleration tensor of link 2
     B_2_o_xy = qdd_2_o - W_2_xy
     B_2_o_yx = -W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x
-    # (uhs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (uhs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_x = (
     B_2_o_yx*J_2_xy + B_2_o_zx*J_2_xz + B_2_o_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_o_t +
         g_r1_x*h_2_z + g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
@@ -1937,18 +1880,18 @@ def _Z_uhs(c, k, x, s, f):
     acc_3_o_x = u_1_tip_x - c_3_t*g_r3_y - g_r1_x*s_3
     acc_3_o_y = u_1_tip_y + g_r3_y*s_3 - c_3_t*g_r1_x
     acc_3_o_z = u_1_tip_z - g_r3_x
-    # (uhs-A26) remainder without the acceleration in: angular acceleration of link 3
+    # (uhs-A24) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3
     alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o
     alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z
-    # (uhs-A28) acceleration tensor of link 3
+    # (uhs-A26) acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
     B_3_o_yz = W_3_yz - alpha_3_o_x
     B_3_o_zx = W_3_xz - alpha_3_o_y
     B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (uhs-N12) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (uhs-N21) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xy + B_3_o_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_z -
         B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_yz - acc_3_o_y*h_3_x
@@ -1961,22 +1904,20 @@ def _Z_uhs(c, k, x, s, f):
     B_3_o_xz*J_3_xz + B_3_o_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_y -
         B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xy - acc_3_o_x*h_3_z
     )
-    # (uhs-N23) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (uhs-N30) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_o_x = mu_2_o_x + mu_3_o_z
     N_2_o_y = mu_2_o_y + c_3_t*mu_3_o_x - mu_3_o_y*s_3
     N_2_o_z = mu_2_o_z + c_3_t*mu_3_o_y + mu_3_o_x*s_3
-    # (uhs-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (uhs-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = N_2_o_z*inv_root_2
     G_o_t_2 = inv_v_1_r0_y*(G_o_t*v_1_r0_x + N_2_o_y*c_2 - N_2_o_x*s_2)
-    # (uhs-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (uhs-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     G_o_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_z - B_3_o_xz*h_3_x - G_o_t*c_3_t
     )
     c_o_y = G_o_t*s_3 + G_o_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_y - B_3_o_yz*h_3_x
-    c_o_z = (
-    h_3_x*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_o_z
-    )
-    # (uhs-N37) velocity and gravity terms of the leg force
+    c_o_z = W_3_zz*h_3_x - B_3_o_zx*h_3_y - B_3_o_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_o_z
+    # (uhs-N44) velocity and gravity terms of the leg force
     U_in_base_x = -axis_x_uhs_axes3_x*c_o_x - axis_y_uhs_axes3_in_base_x*c_o_y - axis_z_x*c_o_z
     U_in_base_y = -axis_x_uhs_axes3_y*c_o_x - axis_y_uhs_axes3_in_base_y*c_o_y - axis_z_y*c_o_z
     U_in_base_z = -axis_x_uhs_axes3_z*c_o_x - axis_y_uhs_axes3_in_base_z*c_o_y - axis_z_z*c_o_z
@@ -2092,7 +2033,7 @@ def _H_uhs(c, k, x, s, f):
     return (ok, (), (w_3_t, w_3_t_2, w_3_t_3, H_a_3_x, H_a_3_y, H_a_3_z,),)
 
 
-# required: 1731 mul, 1299 add, 24 div, 12 sqrt, 12 trig
+# required: 1683 mul, 1287 add, 24 div, 12 sqrt, 12 trig
 def _required_before(c, X, V, A, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
@@ -2374,23 +2315,18 @@ def _required_uhs(c, k, x, s, f):
     W_3_xy = omega_2_r1_x*omega_2_r1_y
     W_3_xz = omega_2_r1_x*omega_3_z
     W_3_yz = omega_2_r1_y*omega_3_z
+    W_3_zz = W_3_t + W_3_t_2
     # (uhs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = omega_2_r1_y*uhs_joint3_offset_x
-    bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x
-    bias_t_3 = omega_2_r1_y*x_3_x
-    bias_t_4 = omega_2_r1_x*x_3_x
-    bias_t_5 = 2.0*qd_3*uhs_joint3_pitch
+    bias_t = 2.0*qd_3*uhs_joint3_pitch
     bias_x = (
-    beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z + bias_t_5*omega_2_r1_y +
-        uhs_joint3_offset_x*zeta_2_t_2
+    bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
+        x_3_x*(W_3_xz + beta_3_y)
     )
     bias_y = (
-    bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t - beta_3_x*x_3_x -
-        bias_t_5*omega_2_r1_x
+    uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
+        bias_t*omega_2_r1_x
     )
-    bias_z = (
-    -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y - bias_t_4*omega_2_r1_x
-    )
+    bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
     # (uhs-V9) reciprocal vector 3
     w_3_t = axis_z_x*inv_uhs_joint3_pitch
     w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch
@@ -2435,15 +2371,15 @@ def _required_uhs(c, k, x, s, f):
     # (uhs-A16) angular acceleration of link 1
     alpha_1_t = qdd_1*s_2
     alpha_1_t_2 = c_2*qdd_1
-    # (uhs-A19) angular acceleration of link 2
+    # (uhs-A18) angular acceleration of link 2
     alpha_2_x = alpha_1_t - zeta_2_x
     alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (uhs-A22) acceleration tensor of link 2
+    # (uhs-A20) acceleration tensor of link 2
     B_2_xy = qdd_2 - W_2_xy
     B_2_yx = -W_2_xy - qdd_2
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x - zeta_2_x
-    # (uhs-N18) inertia moment of the links that turn with link 2, about their reference points
+    # (uhs-N27) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
     B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
         g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
@@ -2456,18 +2392,18 @@ def _required_uhs(c, k, x, s, f):
     B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 - B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t
         - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
     )
-    # (uhs-A24) angular acceleration of link 3
+    # (uhs-A22) angular acceleration of link 3
     alpha_3_x = zeta_3_x + alpha_2_y*c_3_t - qdd_2*s_3
     alpha_3_y = -zeta_3_y - alpha_2_y*s_3 - c_3_t*qdd_2
     alpha_3_z = alpha_2_x + inv_uhs_joint3_pitch*rel_z
-    # (uhs-A27) acceleration tensor of link 3
+    # (uhs-A25) acceleration tensor of link 3
     B_3_xy = W_3_xy - alpha_3_z
     B_3_xz = W_3_xz + alpha_3_y
     B_3_yx = W_3_xy + alpha_3_z
     B_3_yz = W_3_yz - alpha_3_x
     B_3_zx = W_3_xz - alpha_3_y
     B_3_zy = W_3_yz + alpha_3_x
-    # (uhs-N10) inertia moment of the links that turn with link 3, about their reference points
+    # (uhs-N20) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xy + B_3_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_z -
         B_3_yz*Sigma_3_zz - B_3_zx*J_3_yz - acc_3_y*h_3_x
@@ -2480,17 +2416,17 @@ def _required_uhs(c, k, x, s, f):
     B_3_xz*J_3_xz + B_3_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_y*h_3_y -
         B_3_xy*Sigma_3_yy - B_3_yz*J_3_xy - acc_3_x*h_3_z
     )
-    # (uhs-N21) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (uhs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_x = mu_2_x + mu_3_z
     N_2_y = mu_2_y + c_3_t*mu_3_x - mu_3_y*s_3
     N_2_z = mu_2_z + c_3_t*mu_3_y + mu_3_x*s_3
-    # (uhs-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (uhs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = N_2_z*inv_root_2
     G_t_2 = inv_v_1_r0_y*(G_t*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2)
-    # (uhs-N33) leg force on the platform without actuation and without the mass at the connection point
+    # (uhs-N40) leg force on the platform without actuation and without the mass at the connection point
     c_x = G_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_z - B_3_xz*h_3_x - G_t*c_3_t
     c_y = G_t*s_3 + G_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_yx*h_3_y - B_3_yz*h_3_x
-    c_z = h_3_x*(W_3_t + W_3_t_2) - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z
+    c_z = W_3_zz*h_3_x - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z
     c_in_base_x = axis_x_uhs_axes3_x*c_x + axis_y_uhs_axes3_in_base_x*c_y + axis_z_x*c_z
     c_in_base_y = axis_x_uhs_axes3_y*c_x + axis_y_uhs_axes3_in_base_y*c_y + axis_z_y*c_z
     c_in_base_z = axis_x_uhs_axes3_z*c_x + axis_y_uhs_axes3_in_base_z*c_y + axis_z_z*c_z
@@ -2752,7 +2688,7 @@ def _joint_rates_uhs(c, k, x, s, f):
     return (ok, (), (qd_1, qd_2, qd_3,),)
 
 
-# joint_accelerations: 900 mul, 552 add, 24 div, 12 sqrt, 12 trig
+# joint_accelerations: 876 mul, 546 add, 24 div, 12 sqrt, 12 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2945,23 +2881,19 @@ def _joint_accelerations_uhs(c, k, x, s, f):
     beta_3_y = zeta_2_t_2 - omega_2_r1_x*qd_3
     # (uhs-V16) angular velocity of link 3
     omega_3_z = omega_1_t + qd_3
+    # (uhs-V17) centripetal tensor of link 3
+    W_3_zz = omega_2_r1_x*omega_2_r1_x + omega_2_r1_y*omega_2_r1_y
     # (uhs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = omega_2_r1_y*uhs_joint3_offset_x
-    bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x
-    bias_t_3 = omega_2_r1_y*x_3_x
-    bias_t_4 = omega_2_r1_x*x_3_x
-    bias_t_5 = 2.0*qd_3*uhs_joint3_pitch
+    bias_t = 2.0*qd_3*uhs_joint3_pitch
     bias_x = (
-    beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z + bias_t_5*omega_2_r1_y +
-        uhs_joint3_offset_x*zeta_2_t_2
+    bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
+        x_3_x*(beta_3_y + omega_2_r1_x*omega_3_z)
     )
     bias_y = (
-    bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t - beta_3_x*x_3_x -
-        bias_t_5*omega_2_r1_x
+    uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(omega_2_r1_y*omega_3_z -
+        beta_3_x) - bias_t*omega_2_r1_x
     )
-    bias_z = (
-    -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y - bias_t_4*omega_2_r1_x
-    )
+    bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
     # (uhs-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -2990,7 +2922,7 @@ def _joint_accelerations_uhs(c, k, x, s, f):
     return (ok, (), (qdd_1, -qdd_2, qdd_3,),)
 
 
-# legs: 1584 mul, 1164 add, 24 div, 12 sqrt, 12 trig
+# legs: 1536 mul, 1152 add, 24 div, 12 sqrt, 12 trig
 def _legs_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3210,23 +3142,18 @@ def _legs_uhs(c, k, x, s, f):
     W_3_xy = omega_2_r1_x*omega_2_r1_y
     W_3_xz = omega_2_r1_x*omega_3_z
     W_3_yz = omega_2_r1_y*omega_3_z
+    W_3_zz = W_3_t + W_3_t_2
     # (uhs-A7) acceleration of the connection point at zero joint accelerations
-    bias_t = omega_2_r1_y*uhs_joint3_offset_x
-    bias_t_2 = omega_2_r1_x*uhs_joint3_offset_x
-    bias_t_3 = omega_2_r1_y*x_3_x
-    bias_t_4 = omega_2_r1_x*x_3_x
-    bias_t_5 = 2.0*qd_3*uhs_joint3_pitch
+    bias_t = 2.0*qd_3*uhs_joint3_pitch
     bias_x = (
-    beta_3_y*x_3_x + bias_t_2*omega_1_t + bias_t_4*omega_3_z + bias_t_5*omega_2_r1_y +
-        uhs_joint3_offset_x*zeta_2_t_2
+    bias_t*omega_2_r1_y + uhs_joint3_offset_x*(zeta_2_t_2 + omega_1_t*omega_2_r1_x) +
+        x_3_x*(W_3_xz + beta_3_y)
     )
     bias_y = (
-    bias_t*omega_1_t + bias_t_3*omega_3_z + uhs_joint3_offset_x*zeta_2_t - beta_3_x*x_3_x -
-        bias_t_5*omega_2_r1_x
+    uhs_joint3_offset_x*(zeta_2_t + omega_1_t*omega_2_r1_y) + x_3_x*(W_3_yz - beta_3_x) -
+        bias_t*omega_2_r1_x
     )
-    bias_z = (
-    -bias_t*omega_2_r1_y - bias_t_2*omega_2_r1_x - bias_t_3*omega_2_r1_y - bias_t_4*omega_2_r1_x
-    )
+    bias_z = -W_3_zz*uhs_joint3_offset_x - W_3_zz*x_3_x
     # (uhs-V9) reciprocal vector 3
     w_3_t = axis_z_x*inv_uhs_joint3_pitch
     w_3_t_2 = axis_z_y*inv_uhs_joint3_pitch
@@ -3267,15 +3194,15 @@ def _legs_uhs(c, k, x, s, f):
     # (uhs-A16) angular acceleration of link 1
     alpha_1_t = qdd_1*s_2
     alpha_1_t_2 = c_2*qdd_1
-    # (uhs-A19) angular acceleration of link 2
+    # (uhs-A18) angular acceleration of link 2
     alpha_2_x = alpha_1_t - zeta_2_x
     alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (uhs-A22) acceleration tensor of link 2
+    # (uhs-A20) acceleration tensor of link 2
     B_2_xy = qdd_2 - W_2_xy
     B_2_yx = -W_2_xy - qdd_2
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x - zeta_2_x
-    # (uhs-N18) inertia moment of the links that turn with link 2, about their reference points
+    # (uhs-N27) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
     B_2_yx*J_2_xy + B_2_zx*J_2_xz + B_2_zy*Sigma_2_yy + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
         g_r3_y*h_2_y - J_2_yz*(W_2_t_2 - W_2_t_3)
@@ -3288,18 +3215,18 @@ def _legs_uhs(c, k, x, s, f):
     B_2_yx*Sigma_2_xx + J_2_xy*alpha_1_t + J_2_yz*alpha_1_t_2 - B_2_xy*Sigma_2_yy - J_2_xz*(W_2_t
         - W_2_t_2) - g_r3_x*h_2_z - g_r3_y*h_2_x
     )
-    # (uhs-A24) angular acceleration of link 3
+    # (uhs-A22) angular acceleration of link 3
     alpha_3_x = zeta_3_x + alpha_2_y*c_3_t - qdd_2*s_3
     alpha_3_y = -zeta_3_y - alpha_2_y*s_3 - c_3_t*qdd_2
     alpha_3_z = alpha_2_x + inv_uhs_joint3_pitch*rel_z
-    # (uhs-A27) acceleration tensor of link 3
+    # (uhs-A25) acceleration tensor of link 3
     B_3_xy = W_3_xy - alpha_3_z
     B_3_xz = W_3_xz + alpha_3_y
     B_3_yx = W_3_xy + alpha_3_z
     B_3_yz = W_3_yz - alpha_3_x
     B_3_zx = W_3_xz - alpha_3_y
     B_3_zy = W_3_yz + alpha_3_x
-    # (uhs-N10) inertia moment of the links that turn with link 3, about their reference points
+    # (uhs-N20) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xy + B_3_zy*Sigma_3_yy + J_3_xz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_z -
         B_3_yz*Sigma_3_zz - B_3_zx*J_3_yz - acc_3_y*h_3_x
@@ -3312,18 +3239,18 @@ def _legs_uhs(c, k, x, s, f):
     B_3_xz*J_3_xz + B_3_yx*Sigma_3_xx + J_3_yz*(W_3_t - W_3_t_2) + acc_3_y*h_3_y -
         B_3_xy*Sigma_3_yy - B_3_yz*J_3_xy - acc_3_x*h_3_z
     )
-    # (uhs-N21) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (uhs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_x = mu_2_x + mu_3_z
     N_2_y = mu_2_y + c_3_t*mu_3_x - mu_3_y*s_3
     N_2_z = mu_2_z + c_3_t*mu_3_y + mu_3_x*s_3
-    # (uhs-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (uhs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = N_2_z*inv_root_2
     G_t_2 = inv_v_1_r0_y*(G_t*v_1_r0_x + N_2_y*c_2 - N_2_x*s_2)
-    # (uhs-N33) leg force on the platform without actuation and without the mass at the connection point
+    # (uhs-N40) leg force on the platform without actuation and without the mass at the connection point
     c_x = G_t_2*s_3 + h_3_y*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_z - B_3_xz*h_3_x - G_t*c_3_t
     c_y = G_t*s_3 + G_t_2*c_3_t + h_3_z*(W_3_t + W_3_t_3) - B_3_yx*h_3_y - B_3_yz*h_3_x
-    c_z = h_3_x*(W_3_t + W_3_t_2) - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z
-    # (uhs-N38) leg force on the platform without actuation, the last link's mass included
+    c_z = W_3_zz*h_3_x - B_3_zx*h_3_y - B_3_zy*h_3_z - inv_uhs_joint3_pitch*mu_3_z
+    # (uhs-N45) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_3_x*uhs_link3_mass
     c_true_y = c_y - acc_3_y*uhs_link3_mass
     c_true_z = c_z - acc_3_z*uhs_link3_mass
@@ -3489,16 +3416,16 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             _dynamics_uhs,
             "uhs",
 (),
-('J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
-            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx',
-            'Sigma_3_yy', 'Sigma_3_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z',
-            'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_uhs_joint3_pitch', 'size',
-            'size_t_6', 'uhs_base_frame_xx', 'uhs_base_frame_xy', 'uhs_base_frame_xz',
-            'uhs_base_frame_yx', 'uhs_base_frame_yy', 'uhs_base_frame_yz', 'uhs_base_frame_zx',
-            'uhs_base_frame_zy', 'uhs_base_frame_zz', 'uhs_base_point_x', 'uhs_base_point_y',
-            'uhs_base_point_z', 'uhs_joint3_offset_x', 'uhs_joint3_pitch',
-            'uhs_platform_joint_offset_x', 'uhs_platform_point_x', 'uhs_platform_point_y',
-            'uhs_platform_point_z'),
+('J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy',
+            'J_3_yz', 'J_3_zz', 'Jc_2_xx', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx',
+            'Sigma_3_yy', 'Sigma_3_zz', 'branch_1', 'branch_2', 'd_G_t', 'd_phi_3_t',
+            'd_phi_3_t_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x',
+            'h_3_y', 'h_3_z', 'inv_uhs_joint3_pitch', 'size', 'size_t_6', 'uhs_base_frame_xx',
+            'uhs_base_frame_xy', 'uhs_base_frame_xz', 'uhs_base_frame_yx', 'uhs_base_frame_yy',
+            'uhs_base_frame_yz', 'uhs_base_frame_zx', 'uhs_base_frame_zy', 'uhs_base_frame_zz',
+            'uhs_base_point_x', 'uhs_base_point_y', 'uhs_base_point_z', 'uhs_joint3_offset_x',
+            'uhs_joint3_pitch', 'uhs_platform_joint_offset_x', 'uhs_platform_point_x',
+            'uhs_platform_point_y', 'uhs_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -3540,14 +3467,14 @@ arrays=(('M', (6, 6)),),
             _M_uhs,
             "uhs",
 (),
-('J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
-            'J_3_yy', 'J_3_yz', 'J_3_zz', 'branch_1', 'branch_2', 'h_3_x', 'h_3_y', 'h_3_z',
-            'inv_uhs_joint3_pitch', 'size', 'size_t_6', 'uhs_base_frame_xx', 'uhs_base_frame_xy',
-            'uhs_base_frame_xz', 'uhs_base_frame_yx', 'uhs_base_frame_yy', 'uhs_base_frame_yz',
-            'uhs_base_frame_zx', 'uhs_base_frame_zy', 'uhs_base_frame_zz', 'uhs_base_point_x',
-            'uhs_base_point_y', 'uhs_base_point_z', 'uhs_joint3_offset_x',
-            'uhs_platform_joint_offset_x', 'uhs_platform_point_x', 'uhs_platform_point_y',
-            'uhs_platform_point_z'),
+('J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy',
+            'J_3_yz', 'J_3_zz', 'Jc_2_xx', 'branch_1', 'branch_2', 'd_G_t', 'd_phi_3_t',
+            'd_phi_3_t_2', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_uhs_joint3_pitch', 'size', 'size_t_6',
+            'uhs_base_frame_xx', 'uhs_base_frame_xy', 'uhs_base_frame_xz', 'uhs_base_frame_yx',
+            'uhs_base_frame_yy', 'uhs_base_frame_yz', 'uhs_base_frame_zx', 'uhs_base_frame_zy',
+            'uhs_base_frame_zz', 'uhs_base_point_x', 'uhs_base_point_y', 'uhs_base_point_z',
+            'uhs_joint3_offset_x', 'uhs_platform_joint_offset_x', 'uhs_platform_point_x',
+            'uhs_platform_point_y', 'uhs_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

@@ -518,92 +518,13 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (rrrrrr-G9) inertia tensor of link 4 about the origin of link 4
-    J_4_t = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_x
-    J_4_t_2 = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_y
-    J_4_t_3 = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_centre_of_mass_z
-    J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3
-    J_4_xx = rrrrrr_link4_inertia_xx - rrrrrr_link4_mass*(J_4_t - J_4_t_4)
-    J_4_xy = (
-    rrrrrr_link4_inertia_xy -
-        rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
+    # (rrrrrr-G3) inertia tensor of link 1 about the origin of link 1
+    J_1_t = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_centre_of_mass_x
+    J_1_t_2 = (
+    J_1_t + rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_centre_of_mass_y +
+        rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_centre_of_mass_z
     )
-    J_4_xz = (
-    rrrrrr_link4_inertia_xz -
-        rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
-    )
-    J_4_yy = rrrrrr_link4_inertia_yy - rrrrrr_link4_mass*(J_4_t_2 - J_4_t_4)
-    J_4_yz = (
-    rrrrrr_link4_inertia_yz -
-        rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
-    )
-    J_4_zz = rrrrrr_link4_inertia_zz - rrrrrr_link4_mass*(J_4_t_3 - J_4_t_4)
-    # (rrrrrr-G1) size of the leg, the measure of what is near singular
-    size_t = (
-    rrrrrr_base_point_x*rrrrrr_base_point_x + rrrrrr_base_point_y*rrrrrr_base_point_y +
-        rrrrrr_base_point_z*rrrrrr_base_point_z
-    )
-    size_t_2 = rrrrrr_platform_point_x*rrrrrr_platform_point_x
-    size_t_3 = rrrrrr_platform_point_y*rrrrrr_platform_point_y
-    size_t_4 = rrrrrr_platform_point_z*rrrrrr_platform_point_z
-    size_t_5 = size_t_2 + size_t_3 + size_t_4
-    size_t_6 = (
-    rrrrrr_joint2_offset_x*rrrrrr_joint2_offset_x + rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x
-        + rrrrrr_joint4_offset_x*rrrrrr_joint4_offset_x +
-        rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x +
-        rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x + size_t + size_t_5
-    )
-    size = sqrt(size_t_6)
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t = size*size*size*size_t_6
-    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
-    h_4_x = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_mass
-    h_4_y = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
-    h_4_z = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
-    # (rrrrrr-G10) connection point to the centre of mass of link 5
-    rho_tip_5_x = rrrrrr_link5_centre_of_mass_x - rrrrrr_platform_joint_offset_x
-    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
-    J_5_t = rho_tip_5_x*rho_tip_5_x
-    J_5_t_2 = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_y
-    J_5_t_3 = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_centre_of_mass_z
-    J_5_t_4 = J_5_t + J_5_t_2 + J_5_t_3
-    J_5_xx = rrrrrr_link5_inertia_xx - rrrrrr_link5_mass*(J_5_t - J_5_t_4)
-    J_5_xy = rrrrrr_link5_inertia_xy - rho_tip_5_x*rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
-    J_5_xz = rrrrrr_link5_inertia_xz - rho_tip_5_x*rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
-    J_5_yy = rrrrrr_link5_inertia_yy - rrrrrr_link5_mass*(J_5_t_2 - J_5_t_4)
-    J_5_yz = (
-    rrrrrr_link5_inertia_yz -
-        rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
-    )
-    J_5_zz = rrrrrr_link5_inertia_zz - rrrrrr_link5_mass*(J_5_t_3 - J_5_t_4)
-    # (rrrrrr-G11) first moment of link 5 about the connection point
-    h_5_x = rho_tip_5_x*rrrrrr_link5_mass
-    h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
-    h_5_z = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
-    # (rrrrrr-G7) inertia tensor of link 3 about the origin of link 3
-    J_3_t = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_x
-    J_3_t_2 = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_y
-    J_3_t_3 = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_centre_of_mass_z
-    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
-    J_3_xx = rrrrrr_link3_inertia_xx - rrrrrr_link3_mass*(J_3_t - J_3_t_4)
-    J_3_xy = (
-    rrrrrr_link3_inertia_xy -
-        rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
-    )
-    J_3_xz = (
-    rrrrrr_link3_inertia_xz -
-        rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
-    )
-    J_3_yy = rrrrrr_link3_inertia_yy - rrrrrr_link3_mass*(J_3_t_2 - J_3_t_4)
-    J_3_yz = (
-    rrrrrr_link3_inertia_yz -
-        rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
-    )
-    J_3_zz = rrrrrr_link3_inertia_zz - rrrrrr_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rrrrrr-G6) first moment of link 3 about the origin of link 3
-    h_3_x = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_mass
-    h_3_y = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
-    h_3_z = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
+    J_1_xx = rrrrrr_link1_inertia_xx - rrrrrr_link1_mass*(J_1_t - J_1_t_2)
     # (rrrrrr-G5) inertia tensor of link 2 about the origin of link 2
     J_2_t = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_centre_of_mass_x
     J_2_t_2 = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_y
@@ -624,29 +545,121 @@ def _prepare(p):
         rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
     )
     J_2_zz = rrrrrr_link2_inertia_zz - rrrrrr_link2_mass*(J_2_t_3 - J_2_t_4)
+    # (rrrrrr-G7) inertia tensor of link 3 about the origin of link 3
+    J_3_t = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_x
+    J_3_t_2 = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_y
+    J_3_t_3 = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_centre_of_mass_z
+    J_3_t_4 = J_3_t + J_3_t_2 + J_3_t_3
+    J_3_xx = rrrrrr_link3_inertia_xx - rrrrrr_link3_mass*(J_3_t - J_3_t_4)
+    J_3_xy = (
+    rrrrrr_link3_inertia_xy -
+        rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
+    )
+    J_3_xz = (
+    rrrrrr_link3_inertia_xz -
+        rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
+    )
+    J_3_yy = rrrrrr_link3_inertia_yy - rrrrrr_link3_mass*(J_3_t_2 - J_3_t_4)
+    J_3_yz = (
+    rrrrrr_link3_inertia_yz -
+        rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
+    )
+    J_3_zz = rrrrrr_link3_inertia_zz - rrrrrr_link3_mass*(J_3_t_3 - J_3_t_4)
+    # (rrrrrr-G9) inertia tensor of link 4 about the origin of link 4
+    J_4_t = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_x
+    J_4_t_2 = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_y
+    J_4_t_3 = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_centre_of_mass_z
+    J_4_t_4 = J_4_t + J_4_t_2 + J_4_t_3
+    J_4_xx = rrrrrr_link4_inertia_xx - rrrrrr_link4_mass*(J_4_t - J_4_t_4)
+    J_4_xy = (
+    rrrrrr_link4_inertia_xy -
+        rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
+    )
+    J_4_xz = (
+    rrrrrr_link4_inertia_xz -
+        rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
+    )
+    J_4_yy = rrrrrr_link4_inertia_yy - rrrrrr_link4_mass*(J_4_t_2 - J_4_t_4)
+    J_4_yz = (
+    rrrrrr_link4_inertia_yz -
+        rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
+    )
+    J_4_zz = rrrrrr_link4_inertia_zz - rrrrrr_link4_mass*(J_4_t_3 - J_4_t_4)
+    # (rrrrrr-G10) connection point to the centre of mass of link 5
+    rho_tip_5_x = rrrrrr_link5_centre_of_mass_x - rrrrrr_platform_joint_offset_x
+    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
+    J_5_t = rho_tip_5_x*rho_tip_5_x
+    J_5_t_2 = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_y
+    J_5_t_3 = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_centre_of_mass_z
+    J_5_t_4 = J_5_t + J_5_t_2 + J_5_t_3
+    J_5_xx = rrrrrr_link5_inertia_xx - rrrrrr_link5_mass*(J_5_t - J_5_t_4)
+    J_5_xy = rrrrrr_link5_inertia_xy - rho_tip_5_x*rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
+    J_5_xz = rrrrrr_link5_inertia_xz - rho_tip_5_x*rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
+    J_5_yy = rrrrrr_link5_inertia_yy - rrrrrr_link5_mass*(J_5_t_2 - J_5_t_4)
+    J_5_yz = (
+    rrrrrr_link5_inertia_yz -
+        rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
+    )
+    J_5_zz = rrrrrr_link5_inertia_zz - rrrrrr_link5_mass*(J_5_t_3 - J_5_t_4)
+    # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
+    Jc_4_xx = J_4_zz + J_5_zz
+    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    h_4_x = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_mass
+    h_4_y = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
+    h_4_z = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
+    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_t = 0.5*rrrrrr_link4_mass
+    Jc_3_t_2 = rrrrrr_joint4_offset_x*(h_4_x + Jc_3_t*rrrrrr_joint4_offset_x)
+    Jc_3_t_3 = 2.0*Jc_3_t_2
+    # (rrrrrr-G6) first moment of link 3 about the origin of link 3
+    h_3_x = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_mass
+    h_3_y = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
+    h_3_z = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
+    # (rrrrrr-N43) first moment of the links from 3 outwards
+    hc_3_x = h_3_x + h_4_x + rrrrrr_joint4_offset_x*rrrrrr_link4_mass
+    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_t = 0.5*rrrrrr_link3_mass
+    Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + Jc_3_t)
     # (rrrrrr-G4) first moment of link 2 about the origin of link 2
     h_2_x = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_mass
     h_2_y = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass
     h_2_z = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
-    # (rrrrrr-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_centre_of_mass_x
-    J_1_t_2 = (
-    J_1_t + rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_centre_of_mass_y +
-        rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_centre_of_mass_z
+    # (rrrrrr-N52) first moment of the links from 2 outwards
+    hc_2_t = rrrrrr_joint3_offset_x*(rrrrrr_link3_mass + rrrrrr_link4_mass)
+    # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t = rrrrrr_joint2_offset_x*(Jc_2_t + Jc_3_t + 0.5*rrrrrr_link2_mass)
+    # (rrrrrr-G11) first moment of link 5 about the connection point
+    h_5_x = rho_tip_5_x*rrrrrr_link5_mass
+    h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
+    h_5_z = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
+    # (rrrrrr-G1) size of the leg, the measure of what is near singular
+    size_t = (
+    rrrrrr_base_point_x*rrrrrr_base_point_x + rrrrrr_base_point_y*rrrrrr_base_point_y +
+        rrrrrr_base_point_z*rrrrrr_base_point_z
     )
-    J_1_xx = rrrrrr_link1_inertia_xx - rrrrrr_link1_mass*(J_1_t - J_1_t_2)
+    size_t_2 = rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x
+    size_t_3 = rrrrrr_platform_point_x*rrrrrr_platform_point_x
+    size_t_4 = rrrrrr_platform_point_y*rrrrrr_platform_point_y
+    size_t_5 = rrrrrr_platform_point_z*rrrrrr_platform_point_z
+    size_t_6 = size_t_3 + size_t_4 + size_t_5
+    size = (
+    sqrt(rrrrrr_joint2_offset_x*rrrrrr_joint2_offset_x +
+        rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x +
+        rrrrrr_joint4_offset_x*rrrrrr_joint4_offset_x +
+        rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x + size_t + size_t_2 + size_t_6)
+    )
     # (L2) first moment about the platform origin
     h_star_t_4 = rrrrrr_link5_mass*rrrrrr_platform_point_x
     h_star_t_5 = rrrrrr_link5_mass*rrrrrr_platform_point_y
     h_star_t_6 = rrrrrr_link5_mass*rrrrrr_platform_point_z
     # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rrrrrr_link5_mass*(size_t_2 - size_t_5)
+    J_star_t_11 = rrrrrr_link5_mass*(size_t_3 - size_t_6)
     J_star_t_12 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_y
     J_star_t_13 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_z
-    J_star_t_14 = rrrrrr_link5_mass*(size_t_3 - size_t_5)
+    J_star_t_14 = rrrrrr_link5_mass*(size_t_4 - size_t_6)
     J_star_t_15 = rrrrrr_link5_mass*rrrrrr_platform_point_y*rrrrrr_platform_point_z
-    J_star_t_16 = rrrrrr_link5_mass*(size_t_4 - size_t_5)
-    # (rrrrrr-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    J_star_t_16 = rrrrrr_link5_mass*(size_t_5 - size_t_6)
+    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r0_x = (
     gravity_x*rrrrrr_base_frame_xy + gravity_y*rrrrrr_base_frame_yy +
         gravity_z*rrrrrr_base_frame_zy
@@ -659,27 +672,27 @@ def _prepare(p):
     gravity_x*rrrrrr_base_frame_xx + gravity_y*rrrrrr_base_frame_yx +
         gravity_z*rrrrrr_base_frame_zx
     )
-    # (rrrrrr-N49) half the trace of that inertia tensor
+    # (rrrrrr-N70) half the trace of that inertia tensor
     trace_J_4 = 0.5*J_4_xx + 0.5*J_4_yy + 0.5*J_4_zz
-    # (rrrrrr-N50) second moment of mass of the links that turn with link 4
+    # (rrrrrr-N71) second moment of mass of the links that turn with link 4
     Sigma_4_xx = trace_J_4 - J_4_zz
     Sigma_4_yy = trace_J_4 - J_4_yy
     Sigma_4_zz = trace_J_4 - J_4_xx
-    # (rrrrrr-N39) half the trace of that inertia tensor
+    # (rrrrrr-N62) half the trace of that inertia tensor
     trace_J_5 = 0.5*J_5_xx + 0.5*J_5_yy + 0.5*J_5_zz
-    # (rrrrrr-N40) second moment of mass of the links that turn with link 5
+    # (rrrrrr-N63) second moment of mass of the links that turn with link 5
     Sigma_5_xx = trace_J_5 - J_5_xx
     Sigma_5_yy = trace_J_5 - J_5_yy
     Sigma_5_zz = trace_J_5 - J_5_zz
-    # (rrrrrr-N63) half the trace of that inertia tensor
+    # (rrrrrr-N80) half the trace of that inertia tensor
     trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rrrrrr-N64) second moment of mass of the links that turn with link 3
+    # (rrrrrr-N81) second moment of mass of the links that turn with link 3
     Sigma_3_xx = trace_J_3 - J_3_xx
     Sigma_3_yy = trace_J_3 - J_3_yy
     Sigma_3_zz = trace_J_3 - J_3_zz
-    # (rrrrrr-N81) half the trace of that inertia tensor
+    # (rrrrrr-N92) half the trace of that inertia tensor
     trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (rrrrrr-N82) second moment of mass of the links that turn with link 2
+    # (rrrrrr-N93) second moment of mass of the links that turn with link 2
     Sigma_2_xx = trace_J_2 - J_2_xx
     Sigma_2_yy = trace_J_2 - J_2_yy
     Sigma_2_zz = trace_J_2 - J_2_zz
@@ -771,13 +784,17 @@ def _prepare(p):
             "J_4_xz": np.broadcast_to(J_4_xz, _rrrrrr),
             "J_4_yy": np.broadcast_to(J_4_yy, _rrrrrr),
             "J_4_yz": np.broadcast_to(J_4_yz, _rrrrrr),
-            "J_4_zz": np.broadcast_to(J_4_zz, _rrrrrr),
             "J_5_xx": np.broadcast_to(J_5_xx, _rrrrrr),
             "J_5_xy": np.broadcast_to(J_5_xy, _rrrrrr),
             "J_5_xz": np.broadcast_to(J_5_xz, _rrrrrr),
             "J_5_yy": np.broadcast_to(J_5_yy, _rrrrrr),
             "J_5_yz": np.broadcast_to(J_5_yz, _rrrrrr),
             "J_5_zz": np.broadcast_to(J_5_zz, _rrrrrr),
+            "Jc_1_t": np.broadcast_to(Jc_1_t, _rrrrrr),
+            "Jc_2_t_2": np.broadcast_to(Jc_2_t_2, _rrrrrr),
+            "Jc_3_t_2": np.broadcast_to(Jc_3_t_2, _rrrrrr),
+            "Jc_3_t_3": np.broadcast_to(Jc_3_t_3, _rrrrrr),
+            "Jc_4_xx": np.broadcast_to(Jc_4_xx, _rrrrrr),
             "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _rrrrrr),
             "Sigma_2_yy": np.broadcast_to(Sigma_2_yy, _rrrrrr),
             "Sigma_2_zz": np.broadcast_to(Sigma_2_zz, _rrrrrr),
@@ -811,6 +828,8 @@ def _prepare(p):
             "h_5_x": np.broadcast_to(h_5_x, _rrrrrr),
             "h_5_y": np.broadcast_to(h_5_y, _rrrrrr),
             "h_5_z": np.broadcast_to(h_5_z, _rrrrrr),
+            "hc_2_t": np.broadcast_to(hc_2_t, _rrrrrr),
+            "hc_3_x": np.broadcast_to(hc_3_x, _rrrrrr),
             "rrrrrr_base_frame_xx": np.broadcast_to(rrrrrr_base_frame_xx, _rrrrrr),
             "rrrrrr_base_frame_xy": np.broadcast_to(rrrrrr_base_frame_xy, _rrrrrr),
             "rrrrrr_base_frame_xz": np.broadcast_to(rrrrrr_base_frame_xz, _rrrrrr),
@@ -839,7 +858,8 @@ def _prepare(p):
             "rrrrrr_platform_point_x": np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr),
             "rrrrrr_platform_point_y": np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr),
             "rrrrrr_platform_point_z": np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr),
-            "w_1_t": np.broadcast_to(w_1_t, _rrrrrr),
+            "size": np.broadcast_to(size, _rrrrrr),
+            "size_t_2": np.broadcast_to(size_t_2, _rrrrrr),
         },
     }
     return shared, legs
@@ -995,7 +1015,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 17979 mul, 12177 add, 12 div, 0 sqrt, 60 trig
+# dynamics: 10767 mul, 8223 add, 30 div, 30 sqrt, 60 trig
 def _dynamics_before(c, X, V, q, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -1095,22 +1115,23 @@ def _dynamics_before(c, X, V, q, f):
 
 
 def _dynamics_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     (
     J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-        J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz, J_5_xx, J_5_xy, J_5_xz,
-        J_5_yy, J_5_yz, J_5_zz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx, Sigma_3_yy,
-        Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx, Sigma_5_yy, Sigma_5_zz,
-        g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, h_4_x,
-        h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy,
-        rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz,
-        rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
-        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass,
-        rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz, J_5_yy,
+        J_5_yz, J_5_zz, Jc_1_t, Jc_2_t_2, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, Sigma_2_xx, Sigma_2_yy,
+        Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz,
+        Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y,
+        h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_2_t, hc_3_x,
+        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
+        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
+        rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
+        rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
+        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -1197,10 +1218,10 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -1220,9 +1241,9 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -1251,6 +1272,82 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
         axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
     )
+    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
+    J_5_t = J_5_xy*s_5
+    _x = -J_5_t - J_5_xx*c_5_t
+    J_5_t_2 = J_5_xy*c_5_t
+    _x_2 = -J_5_t_2 - J_5_yy*s_5
+    _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
+    _y = J_5_xz*s_5 - J_5_yz*c_5_t
+    # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
+    Jc_4_xy = _x_3 - J_4_yz
+    Jc_4_xz = J_4_xz + _y
+    Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
+    Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
+    Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
+    Jc_4_t = Jc_4_xy*s_4
+    _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
+    Jc_4_t_2 = Jc_4_xy*c_4_t
+    _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
+    _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
+    _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
+    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
+    h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
+    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
+    Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
+    Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
+    Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
+    Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
+    Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
+    Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
+    Jc_3_zz = J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
+    # (rrrrrr-N43) first moment of the links from 3 outwards
+    hc_3_y = h_3_y + h_4_r1_x
+    hc_3_z = h_3_z + h_4_r1_y
+    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_t_5 = Jc_3_xy*s_3
+    _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
+    Jc_3_t_6 = Jc_3_xy*c_3
+    _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
+    _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
+    _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
+    # (rrrrrr-N43) first moment of the links from 3 outwards
+    hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
+    hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
+    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_t = rrrrrr_joint3_offset_x*(Jc_2_t_2 + hc_3_r0_x)
+    Jc_2_t_3 = 2.0*Jc_2_t
+    Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
+    Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
+    # (rrrrrr-N52) first moment of the links from 2 outwards
+    hc_2_x = h_2_x + hc_2_t + hc_3_r0_x
+    hc_2_y = h_2_y + hc_3_r0_y
+    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+    _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
+    _y_5 = (
+    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t - _x_8*s_3) - Jc_2_xy*c_2_t) -
+        c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
+        s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
+    )
+    # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t_2 = rrrrrr_joint2_offset_x*(Jc_1_t + hc_2_x*s_2 - c_2_t*hc_2_y)
+    Jc_1_zz = J_1_xx + _y_5
+    # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
+    L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
+    L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
+    # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
+    L_c4_3_y = _x_6 - Jc_3_t
+    L_c4_3_z = _y_2 - Jc_3_t_4
+    # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
+    L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
+    L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
+    L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
+    # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
+    L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
+    L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
+    L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
     # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
     end_p1_r0_x = (
     rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
@@ -1287,451 +1384,315 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7
-    w_1_t_12 = v_2_z*w_1_t_8 - v_3_z*w_1_t_8
-    w_1_t_13 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_14 = v_1_x*w_1_t_12 + w_1_t_13*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_15 = v_2_z*w_1_t_6 - v_3_z*w_1_t_6
-    w_1_t_16 = v_1_x*w_1_t_15 + w_1_t_13*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_17 = n_m2_t*w_1_t_16 + v_4_z*w_1_t_11 - n_m1_r0_y*w_1_t_14
-    w_1_t_18 = v_2_y*w_1_t_6 - v_3_y*w_1_t_6
-    w_1_t_19 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_20 = v_1_x*w_1_t_18 + w_1_t_19*w_1_t_5 - v_1_y*w_1_t_10
-    w_1_t_21 = v_2_y*v_3_z - v_2_z*v_3_y
-    w_1_t_22 = v_1_x*w_1_t_21 + v_1_z*w_1_t_19 - v_1_y*w_1_t_13
-    w_1_t_23 = n_m1_r0_y*w_1_t_22 + v_4_z*w_1_t_20
-    w_1_t_24 = end_p1_r8_y*w_1_t_23 + rrrrrr_platform_joint_offset_x*w_1_t_17
-    w_1_t_25 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_26 = v_2_z*w_1_t_25
-    w_1_t_27 = v_4_z*w_1_t_8
-    w_1_t_28 = w_1_t_27 + n_m2_t*v_3_z
-    w_1_t_29 = v_4_z*w_1_t_6
-    w_1_t_30 = w_1_t_29 + n_m1_r0_y*v_3_z
-    w_1_t_31 = (
-    end_p1_r8_y*(n_m1_r0_y*w_1_t_21 + v_4_z*w_1_t_18) + rrrrrr_platform_joint_offset_x*(w_1_t_26 +
-        w_1_t_30*w_1_t_8 - w_1_t_28*w_1_t_6)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_32 = v_1_z*w_1_t_25
-    w_1_t_33 = v_1_y*w_1_t_6
-    w_1_t_34 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_3_z - v_1_z*v_3_y) + v_4_z*(w_1_t_33 - v_3_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_32 + w_1_t_30*w_1_t_7 - w_1_t_28*w_1_t_5)
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_35 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_2_z - v_1_z*v_2_y) + v_4_z*(w_1_t_33 - v_2_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_32 + w_1_t_7*(w_1_t_29 + n_m1_r0_y*v_2_z) -
-        w_1_t_5*(w_1_t_27 + n_m2_t*v_2_z))
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_36 = v_1_y*w_1_t_15 + w_1_t_21*w_1_t_5 - v_1_z*w_1_t_18
-    w_1_t_37 = (
-    rrrrrr_platform_joint_offset_x*(w_1_t_12*w_1_t_5 - w_1_t_15*w_1_t_7) - end_p1_r8_y*w_1_t_36
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_1_t_38 = v_2_y*w_1_t_8 - v_3_y*w_1_t_8
-    w_1_t_39 = (
-    n_m2_t*w_1_t_36 + v_4_z*(w_1_t_38*w_1_t_5 - w_1_t_18*w_1_t_7) - n_m1_r0_y*(v_1_y*w_1_t_12 +
-        w_1_t_21*w_1_t_7 - v_1_z*w_1_t_38)
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
     )
-    inv_w_1_t_113 = 1.0/w_1_t_24
-    w_1_t_40 = inv_w_1_t_113*w_1_t_31
-    w_1_t_41 = n_m1_r0_y*w_1_t_13 + v_4_z*w_1_t_10
-    w_1_t_42 = end_p1_r8_y*w_1_t_41
-    w_1_t_43 = v_1_x*w_1_t_6
-    w_1_t_44 = w_1_t_43 - v_3_x*w_1_t_5
-    w_1_t_45 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_46 = n_m1_r0_y*w_1_t_45 + v_4_z*w_1_t_44
-    w_1_t_47 = end_p1_r8_y*w_1_t_46
-    w_1_t_48 = w_1_t_43 - v_2_x*w_1_t_5
-    w_1_t_49 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_50 = n_m1_r0_y*w_1_t_49 + v_4_z*w_1_t_48
-    w_1_t_51 = end_p1_r8_y*w_1_t_50
-    w_1_t_52 = end_p1_r8_y*w_1_t_16
-    w_1_t_53 = inv_w_1_t_113*w_1_t_42
-    w_1_t_54 = end_p1_r8_y*w_1_t_19 + rrrrrr_platform_joint_offset_x*w_1_t_9
-    w_1_t_55 = n_m1_r0_y*w_1_t_54 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_10
-    w_1_t_56 = v_1_x*w_1_t_8
-    w_1_t_57 = (
-    end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) + rrrrrr_platform_joint_offset_x*(w_1_t_56 -
-        v_3_x*w_1_t_7)
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
     )
-    w_1_t_58 = n_m1_r0_y*w_1_t_57 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_44
-    w_1_t_59 = (
-    end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) + rrrrrr_platform_joint_offset_x*(w_1_t_56 -
-        v_2_x*w_1_t_7)
-    )
-    w_1_t_60 = n_m1_r0_y*w_1_t_59 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_48
-    w_1_t_61 = end_p1_r8_y*w_1_t_20 + rrrrrr_platform_joint_offset_x*w_1_t_11
-    w_1_t_62 = v_1_x*w_1_t_38 + w_1_t_19*w_1_t_7 - v_1_y*w_1_t_9
-    w_1_t_63 = n_m1_r0_y*w_1_t_62 - n_m2_t*w_1_t_20
-    w_1_t_64 = inv_w_1_t_113*w_1_t_55
-    w_1_t_65 = inv_w_1_t_113*(v_4_z*w_1_t_54 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_13)
-    w_1_t_66 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_41
-    w_1_r0_x = s_5*w_1_t_53 - c_5_t*w_1_t_40
-    w_1_r0_y = c_5_t*w_1_t_53 + s_5*w_1_t_40
-    w_1_r2_x = -c_4_t*w_1_t_64 - s_4*w_1_r0_x
-    w_1_r2_y = s_4*w_1_t_64 - c_4_t*w_1_r0_x
-    w_1_r4_x = c_3*w_1_r0_y - s_3*w_1_r2_x
-    w_1_r4_y = c_3*w_1_r2_x + s_3*w_1_r0_y
-    w_1_r5_x = -c_2_t*w_1_r4_x - s_2*w_1_r4_y
-    w_1_r5_y = s_2*w_1_r4_x - c_2_t*w_1_r4_y
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    w_1_t_83 = inv_w_1_t_222*w_1_t_77
+    w_1_t_84 = inv_w_1_t_222*w_1_t_78
+    w_1_t_85 = inv_w_1_t_222*w_1_t_79
+    w_1_t_86 = inv_w_1_t_222*w_1_t_80
+    w_1_t_87 = inv_w_1_t_222*w_1_t_81
+    w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
+    w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
+    w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
+    w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
+    w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
+    w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
+    w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
     # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_113*w_1_t_34
-    w_2_t_2 = inv_w_1_t_113*w_1_t_47
-    w_2_t_3 = inv_w_1_t_113*w_1_t_58
-    w_2_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_57 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_45)
-    w_2_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_46
-    # (rrrrrr-A30) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = s_2*w_1_r5_x
-    d_alpha_1_t_2 = c_2_t*w_1_r5_x
-    d_alpha_1_t_3 = s_2*w_1_r5_y
-    d_alpha_1_t_4 = c_2_t*w_1_r5_y
-    d_alpha_1_t_5 = s_2*w_1_r2_y
-    d_alpha_1_t_6 = c_2_t*w_1_r2_y
-    _x = d_alpha_1_t_3*s_2 - c_2_t*d_alpha_1_t
-    _y = -c_2_t*d_alpha_1_t_3 - d_alpha_1_t*s_2
-    _x_2 = c_2_t*d_alpha_1_t_2 - d_alpha_1_t_4*s_2
-    _y_2 = c_2_t*d_alpha_1_t_4 + d_alpha_1_t_2*s_2
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_r0_x = c_5_t*w_2_t - s_5*w_2_t_2
-    w_2_r0_y = -c_5_t*w_2_t_2 - s_5*w_2_t
-    w_2_r2_x = c_4_t*w_2_t_3 - s_4*w_2_r0_x
-    w_2_r2_y = -c_4_t*w_2_r0_x - s_4*w_2_t_3
-    w_2_r4_x = c_3*w_2_r0_y - s_3*w_2_r2_x
-    w_2_r4_y = c_3*w_2_r2_x + s_3*w_2_r0_y
-    # (rrrrrr-A64) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d_a_o3_t = rrrrrr_joint3_offset_x*w_2_r4_x
-    d_a_o3_t_2 = rrrrrr_joint3_offset_x*w_2_r4_y
-    d_a_o3_t_3 = rrrrrr_joint3_offset_x*w_2_r2_y
-    d_a_o3_t_4 = _x_2*rrrrrr_joint3_offset_x
-    d_a_o3_t_5 = _y_2*rrrrrr_joint3_offset_x
-    d_a_o3_t_6 = d_alpha_1_t_6*rrrrrr_joint3_offset_x
+    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
     # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_113*w_1_t_35
-    w_3_t_2 = inv_w_1_t_113*w_1_t_51
-    w_3_t_3 = inv_w_1_t_113*w_1_t_60
-    w_3_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_59 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_49)
-    w_3_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_50
-    # (rrrrrr-A36) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = _x*c_3 + _x_2*s_3
-    _y_3 = _x_2*c_3 - _x*s_3
-    _x_4 = _y*c_3 + _y_2*s_3
-    _y_4 = _y_2*c_3 - _y*s_3
-    _x_5 = c_3*d_alpha_1_t_5 - d_alpha_1_t_6*s_3
-    _y_5 = -c_3*d_alpha_1_t_6 - d_alpha_1_t_5*s_3
-    _x_6 = _x_3*c_3 + _x_4*s_3
-    _y_6 = _x_4*c_3 - _x_3*s_3
-    _x_7 = _y_3*c_3 + _y_4*s_3
-    _y_7 = _y_4*c_3 - _y_3*s_3
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_r0_x = s_5*w_3_t_2 - c_5_t*w_3_t
-    # (rrrrrr-A42) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_zx = c_3*w_2_r4_x + c_5_t*w_3_t_2 + s_3*w_2_r4_y + s_5*w_3_t
-    d_alpha_3_zy = c_3*w_2_r4_y - c_4_t*w_3_t_3 - s_3*w_2_r4_x - s_4*w_3_r0_x
-    d_alpha_3_zz = w_2_r2_y + s_4*w_3_t_3 - c_4_t*w_3_r0_x
-    # (rrrrrr-A64) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d_a_o3_t_7 = d_a_o3_t*s_3
-    d_a_o3_t_8 = c_3*d_a_o3_t
-    d_a_o3_t_9 = d_a_o3_t_2*s_3
-    d_a_o3_t_10 = c_3*d_a_o3_t_2
-    d_a_o3_t_11 = d_a_o3_t_3*s_3
-    d_a_o3_t_12 = c_3*d_a_o3_t_3
-    _x_8 = c_3*d_a_o3_t_7 + d_a_o3_t_9*s_3
-    _y_8 = c_3*d_a_o3_t_9 - d_a_o3_t_7*s_3
-    _x_9 = c_3*d_a_o3_t_8 + d_a_o3_t_10*s_3
-    _y_9 = c_3*d_a_o3_t_10 - d_a_o3_t_8*s_3
-    _x_10 = -c_3*d_a_o3_t_4 - d_a_o3_t_5*s_3
-    _y_10 = d_a_o3_t_4*s_3 - c_3*d_a_o3_t_5
-    # (rrrrrr-A68) coefficient of the acceleration in: acceleration of the origin of joint 4
-    d_a_o4_yx = _x_9 + d_alpha_3_zx*rrrrrr_joint4_offset_x
-    d_a_o4_yy = _y_9 + d_alpha_3_zy*rrrrrr_joint4_offset_x
-    d_a_o4_yz = d_a_o3_t_12 + d_alpha_3_zz*rrrrrr_joint4_offset_x
-    d_a_o4_zx = _x_10 - _x_7*rrrrrr_joint4_offset_x
-    d_a_o4_zy = _y_10 - _y_7*rrrrrr_joint4_offset_x
-    d_a_o4_zz = d_a_o3_t_6 - _y_5*rrrrrr_joint4_offset_x
+    w_3_t = inv_w_1_t_222*w_1_t_83
+    w_3_t_2 = inv_w_1_t_222*w_1_t_84
+    w_3_t_3 = inv_w_1_t_222*w_1_t_85
+    w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
+    w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
     # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_113*w_1_t_37
-    w_4_t_2 = inv_w_1_t_113*w_1_t_52
-    w_4_t_3 = inv_w_1_t_113*w_1_t_61
-    w_4_t_4 = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_14 - end_p1_r8_y*w_1_t_22)
-    w_4_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_16
-    # (rrrrrr-A42) coefficient of the acceleration in: angular acceleration of link 3
-    _x_11 = d_alpha_3_zy*s_4 - _y_7*c_4_t
-    _y_11 = -_y_7*s_4 - c_4_t*d_alpha_3_zy
-    _x_12 = d_alpha_3_zz*s_4 - _y_5*c_4_t
-    _y_12 = -_y_5*s_4 - c_4_t*d_alpha_3_zz
-    _x_13 = d_alpha_3_zx*s_4 - _x_7*c_4_t
-    _y_13 = -_x_7*s_4 - c_4_t*d_alpha_3_zx
-    _x_14 = _x_12*s_4 - _x_11*c_4_t
-    _y_14 = -_x_11*s_4 - _x_12*c_4_t
-    _x_15 = _y_12*s_4 - _y_11*c_4_t
-    _y_15 = -_y_11*s_4 - _y_12*c_4_t
-    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 4
-    d_alpha_4_zx = w_4_t_3 + _x_5*s_4 - _y_6*c_4_t
-    d_alpha_4_zy = c_5_t*w_4_t + s_5*w_4_t_2 - _x_5*c_4_t - _y_6*s_4
-    d_alpha_4_zz = _x_6 + c_5_t*w_4_t_2 - s_5*w_4_t
-    # (rrrrrr-A68) coefficient of the acceleration in: acceleration of the origin of joint 4
-    _x_16 = d_a_o4_zy*s_4 - c_4_t*d_a_o4_yy
-    _y_16 = -c_4_t*d_a_o4_zy - d_a_o4_yy*s_4
-    _x_17 = d_a_o4_zz*s_4 - c_4_t*d_a_o4_yz
-    _y_17 = -c_4_t*d_a_o4_zz - d_a_o4_yz*s_4
-    _x_18 = d_a_o4_zx*s_4 - c_4_t*d_a_o4_yx
-    _y_18 = -c_4_t*d_a_o4_zx - d_a_o4_yx*s_4
-    _x_19 = _x_17*s_4 - _x_16*c_4_t
-    _y_19 = -_x_16*s_4 - _x_17*c_4_t
-    _x_20 = _y_17*s_4 - _y_16*c_4_t
-    _y_20 = -_y_16*s_4 - _y_17*c_4_t
-    _x_21 = d_a_o3_t_11*s_4 - _y_8*c_4_t
-    _y_21 = -_y_8*s_4 - c_4_t*d_a_o3_t_11
+    w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
+    w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
+    w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
+    w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
+    w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
+    w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
+    w_4_t_7 = size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
+    w_4_t_8 = size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
     # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = inv_w_1_t_113*w_1_t_39
-    w_5_t_2 = inv_w_1_t_113*w_1_t_17
-    w_5_t_3 = inv_w_1_t_113*w_1_t_63
-    w_5_t_4 = inv_w_1_t_113*(n_m2_t*w_1_t_22 + v_4_z*w_1_t_62)
-    w_5_t_5 = inv_w_1_t_113*w_1_t_23
-    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 4
-    _x_22 = d_alpha_4_zy*s_5 - _y_15*c_5_t
-    _y_22 = -_y_15*s_5 - c_5_t*d_alpha_4_zy
-    _x_23 = d_alpha_4_zz*s_5 - _y_13*c_5_t
-    _y_23 = -_y_13*s_5 - c_5_t*d_alpha_4_zz
-    _x_24 = d_alpha_4_zx*s_5 - _x_15*c_5_t
-    _y_24 = -_x_15*s_5 - c_5_t*d_alpha_4_zx
-    _x_25 = _x_23*s_5 - _x_22*c_5_t
-    _y_25 = -_x_22*s_5 - _x_23*c_5_t
-    _x_26 = _y_23*s_5 - _y_22*c_5_t
-    _y_26 = -_y_22*s_5 - _y_23*c_5_t
-    # (rrrrrr-A54) coefficient of the acceleration in: angular acceleration of link 5
-    d_alpha_5_zx = _x_13*s_5 - w_5_t - _y_14*c_5_t
-    d_alpha_5_zy = w_5_t_2 - _x_13*c_5_t - _y_14*s_5
-    d_alpha_5_zz = _x_14 + w_5_t_3
-    # (rrrrrr-N43) coefficient of the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-    d_mu_5_t = J_5_xx*_x_25 + J_5_xy*_x_26 + J_5_xz*d_alpha_5_zx
-    d_mu_5_t_2 = J_5_xy*_y_25 + J_5_yy*_y_26 + J_5_yz*d_alpha_5_zy
-    d_mu_5_t_3 = J_5_xz*_x_24 + J_5_yz*_y_24 + J_5_zz*d_alpha_5_zz
-    d_mu_5_xy = J_5_xx*_y_25 + J_5_xy*_y_26 + J_5_xz*d_alpha_5_zy - h_5_z
-    d_mu_5_xz = h_5_y + J_5_xx*_x_24 + J_5_xy*_y_24 + J_5_xz*d_alpha_5_zz
-    d_mu_5_yx = h_5_z + J_5_xy*_x_25 + J_5_yy*_x_26 + J_5_yz*d_alpha_5_zx
-    d_mu_5_yz = J_5_xy*_x_24 + J_5_yy*_y_24 + J_5_yz*d_alpha_5_zz - h_5_x
-    d_mu_5_zx = J_5_xz*_x_25 + J_5_yz*_x_26 + J_5_zz*d_alpha_5_zx - h_5_y
-    d_mu_5_zy = h_5_x + J_5_xz*_y_25 + J_5_yz*_y_26 + J_5_zz*d_alpha_5_zy
-    _x_27 = -c_5_t*d_mu_5_t - d_mu_5_yx*s_5
-    _y_27 = d_mu_5_t*s_5 - c_5_t*d_mu_5_yx
-    _x_28 = -c_5_t*d_mu_5_xy - d_mu_5_t_2*s_5
-    _y_28 = d_mu_5_xy*s_5 - c_5_t*d_mu_5_t_2
-    # (rrrrrr-N57) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    d_N_4_xx = (
-    d_mu_5_t_3 + J_4_xz*d_alpha_4_zx + J_4_zz*_x_14 - J_4_yz*_x_15 - _x_20*h_4_x - _x_21*h_4_y
+    w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
+    w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
+    w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
+    w_5_t_4 = (
+    inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 - w_1_t_47*w_5_t)
     )
-    d_N_4_xy = (
-    J_4_xz*d_alpha_4_zy + J_4_zz*_y_14 - J_4_yz*_y_15 - _y_20*h_4_x - _y_21*h_4_y -
-        c_5_t*d_mu_5_zx - d_mu_5_zy*s_5
+    w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
+    w_5_t_6 = (
+    inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
+        w_1_t_84*w_5_t_4
     )
-    d_N_4_xz = (
-    J_4_xz*d_alpha_4_zz + J_4_zz*_x_13 + d_mu_5_zx*s_5 - J_4_yz*_y_13 - _x_8*h_4_y - _y_18*h_4_x -
-        c_5_t*d_mu_5_zy
+    w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
+    w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
+    w_5_t_9 = (
+    size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
+        w_1_t_87*w_5_t_4)
     )
-    d_N_4_yx = (
-    J_4_yy*_x_15 + _x_19*h_4_x - J_4_xy*d_alpha_4_zx - J_4_yz*_x_14 - _x_21*h_4_z -
-        c_5_t*d_mu_5_xz - d_mu_5_yz*s_5
+    # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
+    d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
+    d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
+    d_Gamma_1_t_4 = (
+    inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 - d_Gamma_1_t_3*w_1_t_58)
     )
-    d_N_4_yy = (
-    J_4_yy*_y_15 + _y_19*h_4_x - J_4_xy*d_alpha_4_zy - J_4_yz*_y_14 - _x_27*c_5_t - _x_28*s_5 -
-        _y_21*h_4_z
+    d_Gamma_1_t_5 = (
+    inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
+        d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
     )
-    d_N_4_yz = (
-    J_4_yy*_y_13 + _x_18*h_4_x + _x_27*s_5 - J_4_xy*d_alpha_4_zz - J_4_yz*_x_13 - _x_28*c_5_t -
-        _x_8*h_4_z
+    d_Gamma_1_x = (
+    d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z +
+        h_5_y*v_1_t
     )
-    d_N_4_zx = (
-    J_4_xx*d_alpha_4_zx + J_4_xz*_x_14 + _x_19*h_4_y + _x_20*h_4_z + d_mu_5_xz*s_5 - J_4_xy*_x_15
-        - c_5_t*d_mu_5_yz
+    d_Gamma_1_y = (
+    d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
+        d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
     )
-    d_N_4_zy = (
-    J_4_xx*d_alpha_4_zy + J_4_xz*_y_14 + _y_19*h_4_y + _y_20*h_4_z - J_4_xy*_y_15 - _y_27*c_5_t -
-        _y_28*s_5
+    d_Gamma_1_z = (
+    d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
+        d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
     )
-    d_N_4_zz = (
-    J_4_xx*d_alpha_4_zz + J_4_xz*_x_13 + _x_18*h_4_y + _y_18*h_4_z + _y_27*s_5 - J_4_xy*_y_13 -
-        _y_28*c_5_t
+    # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
+    d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
+    d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
+    d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
+    d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
+    d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
+    d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
+    d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
+    d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
+    d_Gamma_2_t_10 = (
+    inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
     )
-    # (rrrrrr-N31) coefficient of the acceleration in: inertia force of link 4 less its weight
-    d_f_4_xx = _x_15*h_4_x + _x_19*rrrrrr_link4_mass + d_alpha_4_zx*h_4_y
-    d_f_4_xy = _y_15*h_4_x + _y_19*rrrrrr_link4_mass + d_alpha_4_zy*h_4_y
-    d_f_4_xz = _x_18*rrrrrr_link4_mass + _y_13*h_4_x + d_alpha_4_zz*h_4_y
-    d_f_4_yx = _x_20*rrrrrr_link4_mass + d_alpha_4_zx*h_4_z - _x_14*h_4_x
-    d_f_4_yy = _y_20*rrrrrr_link4_mass + d_alpha_4_zy*h_4_z - _y_14*h_4_x
-    d_f_4_yz = _y_18*rrrrrr_link4_mass + d_alpha_4_zz*h_4_z - _x_13*h_4_x
-    d_f_4_zx = _x_21*rrrrrr_link4_mass - _x_14*h_4_y - _x_15*h_4_z
-    d_f_4_zy = _y_21*rrrrrr_link4_mass - _y_14*h_4_y - _y_15*h_4_z
-    # (rrrrrr-N57) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    _x_29 = -c_4_t*d_N_4_xx - d_N_4_yx*s_4
-    _y_29 = d_N_4_xx*s_4 - c_4_t*d_N_4_yx
-    _x_30 = -c_4_t*d_N_4_xy - d_N_4_yy*s_4
-    _y_30 = d_N_4_xy*s_4 - c_4_t*d_N_4_yy
-    # (rrrrrr-N31) coefficient of the acceleration in: inertia force of link 4 less its weight
-    _x_31 = -c_4_t*d_f_4_xx - d_f_4_yx*s_4
-    _y_31 = d_f_4_xx*s_4 - c_4_t*d_f_4_yx
-    _x_32 = -c_4_t*d_f_4_xy - d_f_4_yy*s_4
-    _y_32 = d_f_4_xy*s_4 - c_4_t*d_f_4_yy
-    _x_33 = -c_4_t*d_f_4_xz - d_f_4_yz*s_4
-    _y_33 = d_f_4_xz*s_4 - c_4_t*d_f_4_yz
-    _x_34 = -_x_31*c_4_t - _x_32*s_4
-    _y_34 = _x_31*s_4 - _x_32*c_4_t
-    _x_35 = -_y_31*c_4_t - _y_32*s_4
-    _y_35 = _y_31*s_4 - _y_32*c_4_t
-    # (rrrrrr-N71) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d_N_3_xx = (
-    d_N_4_zz + J_3_xx*_x_6 + J_3_xy*_x_7 + J_3_xz*d_alpha_3_zx + _x_10*h_3_y - _x_9*h_3_z
+    d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
+    d_Gamma_2_t_12 = (
+    inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 - d_Gamma_2_t_10*w_1_t_76 -
+        d_Gamma_2_t_8*w_1_t_64)
     )
-    d_N_3_xy = (
-    J_3_xx*_y_6 + J_3_xy*_y_7 + J_3_xz*d_alpha_3_zy + _y_10*h_3_y - _y_9*h_3_z - c_4_t*d_N_4_zx -
-        d_N_4_zy*s_4
+    d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
+    d_Gamma_2_x = (
+    d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
     )
-    d_N_3_xz = (
-    J_3_xx*_x_5 + J_3_xy*_y_5 + J_3_xz*d_alpha_3_zz + d_N_4_zx*s_4 + d_a_o3_t_6*h_3_y -
-        c_4_t*d_N_4_zy - d_a_o3_t_12*h_3_z
+    d_Gamma_2_y = (
+    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
+        d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
     )
-    d_N_3_yx = (
-    J_3_xy*_x_6 + J_3_yy*_x_7 + J_3_yz*d_alpha_3_zx + _x_8*h_3_z - _x_10*h_3_x -
-        _y_33*rrrrrr_joint4_offset_x - c_4_t*d_N_4_xz - d_N_4_yz*s_4
+    d_Gamma_2_z = (
+    d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33 +
+        d_Gamma_2_t_8*w_1_t_55
     )
-    d_N_3_yy = (
-    J_3_xy*_y_6 + J_3_yy*_y_7 + J_3_yz*d_alpha_3_zy + _y_8*h_3_z - _x_29*c_4_t - _x_30*s_4 -
-        _x_35*rrrrrr_joint4_offset_x - _y_10*h_3_x
+    # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
+    d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
+    d_Gamma_3_t_3 = (
+    inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
     )
-    d_N_3_yz = (
-    J_3_xy*_x_5 + J_3_yy*_y_5 + J_3_yz*d_alpha_3_zz + _x_29*s_4 + d_a_o3_t_11*h_3_z - _x_30*c_4_t
-        - _y_35*rrrrrr_joint4_offset_x - d_a_o3_t_6*h_3_x
+    d_Gamma_3_t_4 = (
+    inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
+        d_Gamma_3_t_3*w_1_t_76)
     )
-    d_N_3_zx = (
-    J_3_xz*_x_6 + J_3_yz*_x_7 + J_3_zz*d_alpha_3_zx + _x_33*rrrrrr_joint4_offset_x + _x_9*h_3_x +
-        d_N_4_xz*s_4 - _x_8*h_3_y - c_4_t*d_N_4_yz
+    d_Gamma_3_x = (
+    d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
     )
-    d_N_3_zy = (
-    J_3_xz*_y_6 + J_3_yz*_y_7 + J_3_zz*d_alpha_3_zy + _x_34*rrrrrr_joint4_offset_x + _y_9*h_3_x -
-        _y_29*c_4_t - _y_30*s_4 - _y_8*h_3_y
+    d_Gamma_3_y = (
+    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
+        d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
     )
-    d_N_3_zz = (
-    J_3_xz*_x_5 + J_3_yz*_y_5 + J_3_zz*d_alpha_3_zz + _y_29*s_4 + _y_34*rrrrrr_joint4_offset_x +
-        d_a_o3_t_12*h_3_x - _y_30*c_4_t - d_a_o3_t_11*h_3_y
+    d_Gamma_3_z = (
+    d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
+        d_Gamma_3_t_4*w_1_t_85
     )
-    # (rrrrrr-N75) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    d_T_3_zx = _y_33 + _x_10*rrrrrr_link3_mass + _x_6*h_3_y - _x_7*h_3_x
-    d_T_3_zy = _x_35 + _y_10*rrrrrr_link3_mass + _y_6*h_3_y - _y_7*h_3_x
-    # (rrrrrr-N71) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    _x_36 = c_3*d_N_3_xx - d_N_3_yx*s_3
-    _y_36 = c_3*d_N_3_yx + d_N_3_xx*s_3
-    _x_37 = c_3*d_N_3_xy - d_N_3_yy*s_3
-    _y_37 = c_3*d_N_3_yy + d_N_3_xy*s_3
-    # (rrrrrr-N75) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    _y_38 = (
-    c_3*(_x_33 + _x_9*rrrrrr_link3_mass + d_alpha_3_zx*h_3_x - _x_6*h_3_z) + s_3*(_x_7*h_3_z +
-        _x_8*rrrrrr_link3_mass + _x_8*rrrrrr_link4_mass - _x_13*h_4_y - _y_13*h_4_z -
-        d_alpha_3_zx*h_3_y)
+    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d_Gamma_4_t = _y*inv_w_1_t_69
+    d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
+    d_Gamma_4_t_3 = inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
+    d_Gamma_4_t_4 = (
+    inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
+        d_Gamma_4_t_3*w_1_t_58)
     )
-    _y_39 = (
-    c_3*(_x_34 + _y_9*rrrrrr_link3_mass + d_alpha_3_zy*h_3_x - _y_6*h_3_z) + s_3*(_y_7*h_3_z +
-        _y_8*rrrrrr_link3_mass - c_4_t*d_f_4_zx - d_alpha_3_zy*h_3_y - d_f_4_zy*s_4)
+    d_Gamma_4_t_5 = (
+    inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
+        d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
     )
-    _y_40 = (
-    c_3*(_y_34 + d_a_o3_t_12*rrrrrr_link3_mass + d_alpha_3_zz*h_3_x - _x_5*h_3_z) +
-        s_3*(_y_5*h_3_z + d_a_o3_t_11*rrrrrr_link3_mass + d_f_4_zx*s_4 - c_4_t*d_f_4_zy -
-        d_alpha_3_zz*h_3_y)
+    d_Gamma_4_x = (
+    d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
     )
-    # (rrrrrr-N89) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_yz = (
-    J_2_xy*d_alpha_1_t_5 + J_2_yz*w_2_r2_y + c_3*d_N_3_yz + d_N_3_xz*s_3 - J_2_yy*d_alpha_1_t_6 -
-        rrrrrr_joint3_offset_x*(_y_35 + _x_5*h_3_y + d_a_o3_t_6*rrrrrr_link3_mass - _y_5*h_3_x)
+    d_Gamma_4_y = (
+    d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
+        d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
     )
-    d_N_2_zx = (
-    J_2_xz*_x + J_2_yz*_x_2 + J_2_zz*w_2_r4_x + c_3*d_N_3_zx + rrrrrr_joint3_offset_x*(_y_38*c_3 -
-        _y_39*s_3) - d_N_3_zy*s_3
+    d_Gamma_4_z = (
+    c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
+        d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
     )
-    d_N_2_zy = (
-    J_2_xz*_y + J_2_yz*_y_2 + J_2_zz*w_2_r4_y + c_3*d_N_3_zy + d_N_3_zx*s_3 +
-        rrrrrr_joint3_offset_x*(_y_38*s_3 + _y_39*c_3)
+    # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+    d_Gamma_5_t = J_5_zz*inv_w_1_t_69
+    d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
+    d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
+    d_Gamma_5_t_4 = (
+    inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
+        d_Gamma_5_t_3*w_1_t_58)
     )
-    d_N_2_zz = (
-    d_N_3_zz + J_2_xz*d_alpha_1_t_5 + J_2_zz*w_2_r2_y + _y_40*rrrrrr_joint3_offset_x -
-        J_2_yz*d_alpha_1_t_6
+    d_Gamma_5_t_5 = (
+    inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
+        d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
     )
-    d_N_2_t = (
-    c_2_t*(J_2_xy*_x + J_2_yy*_x_2 + J_2_yz*w_2_r4_x + _y_36*c_3 - _y_37*s_3 -
-        rrrrrr_joint3_offset_x*(c_3*d_T_3_zx - d_T_3_zy*s_3))
+    d_Gamma_5_t_6 = (
+    d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
+        d_Gamma_5_t_5*w_1_t_85
     )
-    _y_41 = s_2*(J_2_xx*_x + J_2_xy*_x_2 + J_2_xz*w_2_r4_x + _x_36*c_3 - _x_37*s_3) - d_N_2_t
-    d_N_2_t_2 = (
-    c_2_t*(J_2_xy*_y + J_2_yy*_y_2 + J_2_yz*w_2_r4_y + _y_36*s_3 + _y_37*c_3 -
-        rrrrrr_joint3_offset_x*(c_3*d_T_3_zy + d_T_3_zx*s_3))
+    d_Gamma_5_x = d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
+    d_Gamma_5_y = (
+    h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
+        d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
     )
-    _y_42 = s_2*(J_2_xx*_y + J_2_xy*_y_2 + J_2_xz*w_2_r4_y + _x_36*s_3 + _x_37*c_3) - d_N_2_t_2
-    # (rrrrrr-N107) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_zx = (
-    J_1_xx*w_1_r2_y + s_2*(J_2_xx*d_alpha_1_t_5 + J_2_xz*w_2_r2_y + c_3*d_N_3_xz -
-        J_2_xy*d_alpha_1_t_6 - d_N_3_yz*s_3) - c_2_t*d_N_2_yz
+    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
+    d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
+    d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
+    d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
+    d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
+    # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
+    d_phi_5_t = (
+    h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
+        h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
     )
-    d_N_1_zy = J_1_xx*w_1_r5_x - _y_41*c_2_t - _y_42*s_2
-    d_N_1_zz = J_1_xx*w_1_r5_y + _y_41*s_2 - _y_42*c_2_t
-    # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r1_x = d_N_1_zz*s_2 - c_2_t*d_N_1_zy
-    d_Gamma_1_r1_y = -c_2_t*d_N_1_zz - d_N_1_zy*s_2
-    d_Gamma_1_r2_x = c_3*d_Gamma_1_r1_x + d_Gamma_1_r1_y*s_3
-    d_Gamma_1_r2_y = c_3*d_Gamma_1_r1_y - d_Gamma_1_r1_x*s_3
-    d_Gamma_1_r4_x = d_N_1_zx*s_4 - c_4_t*d_Gamma_1_r2_y
-    d_Gamma_1_r4_y = -c_4_t*d_N_1_zx - d_Gamma_1_r2_y*s_4
-    d_Gamma_1_r6_x = d_Gamma_1_r2_x*s_5 - c_5_t*d_Gamma_1_r4_y
-    d_Gamma_1_r6_y = -c_5_t*d_Gamma_1_r2_x - d_Gamma_1_r4_y*s_5
-    # (rrrrrr-N97) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_r0_x = c_3*d_N_2_zx + d_N_2_zy*s_3
-    d_Gamma_2_r0_y = c_3*d_N_2_zy - d_N_2_zx*s_3
-    d_Gamma_2_r2_x = d_N_2_zz*s_4 - c_4_t*d_Gamma_2_r0_y
-    d_Gamma_2_r2_y = -c_4_t*d_N_2_zz - d_Gamma_2_r0_y*s_4
-    d_Gamma_2_r4_x = d_Gamma_2_r0_x*s_5 - c_5_t*d_Gamma_2_r2_y
-    d_Gamma_2_r4_y = -c_5_t*d_Gamma_2_r0_x - d_Gamma_2_r2_y*s_5
-    # (rrrrrr-N79) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_r1_x = d_N_3_zz*s_4 - c_4_t*d_N_3_zy
-    d_Gamma_3_r1_y = -c_4_t*d_N_3_zz - d_N_3_zy*s_4
-    d_Gamma_3_r3_x = d_N_3_zx*s_5 - c_5_t*d_Gamma_3_r1_y
-    d_Gamma_3_r3_y = -c_5_t*d_N_3_zx - d_Gamma_3_r1_y*s_5
-    # (rrrrrr-N61) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d_Gamma_4_r1_x = d_N_4_zz*s_5 - c_5_t*d_N_4_zy
-    d_Gamma_4_r1_y = -c_5_t*d_N_4_zz - d_N_4_zy*s_5
-    # (rrrrrr-N123) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    d_Gamma_2_r4_x*w_2_t + d_Gamma_4_r1_x*w_4_t + d_alpha_5_zx*h_5_y + d_mu_5_zx*w_5_t -
-        _x_26*h_5_z - d_Gamma_1_r6_x*w_1_t_40 - d_Gamma_3_r3_x*w_3_t
+    d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
+        d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
     )
     d_c_xy = (
-    d_Gamma_2_r4_y*w_2_t + d_Gamma_4_r1_y*w_4_t + d_alpha_5_zy*h_5_y + d_mu_5_zy*w_5_t -
-        _y_26*h_5_z - d_Gamma_1_r6_y*w_1_t_40 - d_Gamma_3_r3_y*w_3_t
+    d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
+        d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
+        v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
     )
     d_c_xz = (
-    d_Gamma_2_r2_x*w_2_t + d_N_4_zx*w_4_t + d_alpha_5_zz*h_5_y + d_mu_5_t_3*w_5_t - _y_24*h_5_z -
-        d_Gamma_1_r4_x*w_1_t_40 - d_Gamma_3_r1_x*w_3_t
+    d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
+        d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
+    )
+    d_c_yy = (
+    d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91 -
+        s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 - d_Gamma_5_y*w_5_t_6
+        - d_alpha_5_zy*h_5_x
     )
     d_c_yz = (
-    _x_24*h_5_z + d_Gamma_1_r4_x*w_1_t_53 + d_Gamma_3_r1_x*w_3_t_2 + d_N_4_zx*w_4_t_2 -
-        d_Gamma_2_r2_x*w_2_t_2 - d_alpha_5_zz*h_5_x - d_mu_5_t_3*w_5_t_2
+    d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
+        d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
     )
-    # (rrrrrr-N125) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = (
-    d_c_xx + d_Gamma_2_r4_y*w_2_t_2 + d_alpha_5_zy*h_5_x + d_mu_5_zy*w_5_t_2 - _y_25*h_5_z -
-        d_Gamma_1_r6_y*w_1_t_53 - d_Gamma_3_r3_y*w_3_t_2 - d_Gamma_4_r1_y*w_4_t_2
-    )
+    # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
     Q_t_3 = (
-    d_c_xx + _x_24*h_5_y + d_Gamma_1_r4_x*w_1_t_64 + d_Gamma_3_r1_x*w_3_t_3 + d_N_4_zx*w_4_t_3 +
-        d_mu_5_t_3*w_5_t_3 - _y_24*h_5_x - d_Gamma_2_r2_x*w_2_t_3
+    d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y - d_Gamma_1_z*w_1_t_92
+        - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 - d_alpha_5_yz*h_5_x
     )
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
@@ -1768,369 +1729,112 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
     Q_t_19 = 2.0*Q_t_18 + d_c_xx
     # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_65
-    o_1_t_2 = end_p1_r8_y*w_1_t_66
-    o_1_y = -end_p1_r6_x*w_1_t_66 - end_p1_r8_x*w_1_t_65
-    o_1_r0_x = -c_5_t*o_1_t - o_1_y*s_5
-    o_1_r0_y = o_1_t*s_5 - c_5_t*o_1_y
-    o_1_r2_x = -c_4_t*o_1_t_2 - o_1_r0_x*s_4
-    o_1_r2_y = o_1_t_2*s_4 - c_4_t*o_1_r0_x
-    o_1_r4_x = c_3*o_1_r0_y - o_1_r2_x*s_3
-    o_1_r4_y = c_3*o_1_r2_x + o_1_r0_y*s_3
-    o_1_r5_x = -c_2_t*o_1_r4_x - o_1_r4_y*s_2
-    o_1_r5_y = o_1_r4_x*s_2 - c_2_t*o_1_r4_y
+    o_1_t = end_p1_r8_y*w_1_t_93
+    o_1_t_2 = end_p1_r8_y*w_1_t_94
+    o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
     # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_4
-    o_2_t_2 = end_p1_r8_y*w_2_t_5
-    o_2_y = end_p1_r6_x*w_2_t_5 + end_p1_r8_x*w_2_t_4
-    # (rrrrrr-A29) coefficient of the acceleration in: angular acceleration of link 1
-    d0_alpha_1_t = o_1_r5_x*s_2
-    d0_alpha_1_t_2 = c_2_t*o_1_r5_x
-    d0_alpha_1_t_3 = o_1_r5_y*s_2
-    d0_alpha_1_t_4 = c_2_t*o_1_r5_y
-    d0_alpha_1_t_5 = o_1_r2_y*s_2
-    d0_alpha_1_t_6 = c_2_t*o_1_r2_y
-    _x_38 = d0_alpha_1_t_3*s_2 - c_2_t*d0_alpha_1_t
-    _y_43 = -c_2_t*d0_alpha_1_t_3 - d0_alpha_1_t*s_2
-    _x_39 = c_2_t*d0_alpha_1_t_2 - d0_alpha_1_t_4*s_2
-    _y_44 = c_2_t*d0_alpha_1_t_4 + d0_alpha_1_t_2*s_2
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_r0_x = c_5_t*o_2_t - o_2_y*s_5
-    o_2_r0_y = -c_5_t*o_2_y - o_2_t*s_5
-    o_2_r2_x = c_4_t*o_2_t_2 - o_2_r0_x*s_4
-    o_2_r2_y = -c_4_t*o_2_r0_x - o_2_t_2*s_4
-    o_2_r4_x = c_3*o_2_r0_y - o_2_r2_x*s_3
-    o_2_r4_y = c_3*o_2_r2_x + o_2_r0_y*s_3
-    # (rrrrrr-A63) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d0_a_o3_t = o_2_r4_x*rrrrrr_joint3_offset_x
-    d0_a_o3_t_2 = o_2_r4_y*rrrrrr_joint3_offset_x
-    d0_a_o3_t_3 = o_2_r2_y*rrrrrr_joint3_offset_x
-    d0_a_o3_t_4 = _x_39*rrrrrr_joint3_offset_x
-    d0_a_o3_t_5 = _y_44*rrrrrr_joint3_offset_x
-    d0_a_o3_t_6 = d0_alpha_1_t_6*rrrrrr_joint3_offset_x
+    o_2_t = end_p1_r8_y*w_2_t_5
+    o_2_t_2 = end_p1_r8_y*w_2_t_6
+    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
     # (rrrrrr-V30) moment part of reciprocal wrench 3
     o_3_t = end_p1_r8_y*w_3_t_4
     o_3_t_2 = end_p1_r8_y*w_3_t_5
-    o_3_y = -end_p1_r6_x*w_3_t_5 - end_p1_r8_x*w_3_t_4
-    # (rrrrrr-A35) coefficient of the acceleration in: angular acceleration of link 2
-    _x_40 = _x_38*c_3 + _x_39*s_3
-    _y_45 = _x_39*c_3 - _x_38*s_3
-    _x_41 = _y_43*c_3 + _y_44*s_3
-    _y_46 = _y_44*c_3 - _y_43*s_3
-    _x_42 = c_3*d0_alpha_1_t_5 - d0_alpha_1_t_6*s_3
-    _y_47 = -c_3*d0_alpha_1_t_6 - d0_alpha_1_t_5*s_3
-    _x_43 = _x_40*c_3 + _x_41*s_3
-    _y_48 = _x_41*c_3 - _x_40*s_3
-    _x_44 = _y_45*c_3 + _y_46*s_3
-    _y_49 = _y_46*c_3 - _y_45*s_3
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_r0_x = -c_5_t*o_3_t - o_3_y*s_5
-    # (rrrrrr-A41) coefficient of the acceleration in: angular acceleration of link 3
-    d0_alpha_3_zx = c_3*o_2_r4_x + o_2_r4_y*s_3 + o_3_t*s_5 - c_5_t*o_3_y
-    d0_alpha_3_zy = c_3*o_2_r4_y - c_4_t*o_3_t_2 - o_2_r4_x*s_3 - o_3_r0_x*s_4
-    d0_alpha_3_zz = o_2_r2_y + o_3_t_2*s_4 - c_4_t*o_3_r0_x
-    # (rrrrrr-A63) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d0_a_o3_t_7 = d0_a_o3_t*s_3
-    d0_a_o3_t_8 = c_3*d0_a_o3_t
-    d0_a_o3_t_9 = d0_a_o3_t_2*s_3
-    d0_a_o3_t_10 = c_3*d0_a_o3_t_2
-    d0_a_o3_t_11 = d0_a_o3_t_3*s_3
-    d0_a_o3_t_12 = c_3*d0_a_o3_t_3
-    _x_45 = c_3*d0_a_o3_t_7 + d0_a_o3_t_9*s_3
-    _y_50 = c_3*d0_a_o3_t_9 - d0_a_o3_t_7*s_3
-    _x_46 = c_3*d0_a_o3_t_8 + d0_a_o3_t_10*s_3
-    _y_51 = c_3*d0_a_o3_t_10 - d0_a_o3_t_8*s_3
-    _x_47 = -c_3*d0_a_o3_t_4 - d0_a_o3_t_5*s_3
-    _y_52 = d0_a_o3_t_4*s_3 - c_3*d0_a_o3_t_5
-    # (rrrrrr-A67) coefficient of the acceleration in: acceleration of the origin of joint 4
-    d0_a_o4_yx = _x_46 + d0_alpha_3_zx*rrrrrr_joint4_offset_x
-    d0_a_o4_yy = _y_51 + d0_alpha_3_zy*rrrrrr_joint4_offset_x
-    d0_a_o4_yz = d0_a_o3_t_12 + d0_alpha_3_zz*rrrrrr_joint4_offset_x
-    d0_a_o4_zx = _x_47 - _x_44*rrrrrr_joint4_offset_x
-    d0_a_o4_zy = _y_52 - _y_49*rrrrrr_joint4_offset_x
-    d0_a_o4_zz = d0_a_o3_t_6 - _y_47*rrrrrr_joint4_offset_x
+    o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
     # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t_4
-    o_4_t_2 = end_p1_r8_y*w_4_t_5
-    o_4_y = -end_p1_r6_x*w_4_t_5 - end_p1_r8_x*w_4_t_4
-    # (rrrrrr-A41) coefficient of the acceleration in: angular acceleration of link 3
-    _x_48 = d0_alpha_3_zy*s_4 - _y_49*c_4_t
-    _y_53 = -_y_49*s_4 - c_4_t*d0_alpha_3_zy
-    _x_49 = d0_alpha_3_zz*s_4 - _y_47*c_4_t
-    _y_54 = -_y_47*s_4 - c_4_t*d0_alpha_3_zz
-    _x_50 = d0_alpha_3_zx*s_4 - _x_44*c_4_t
-    _y_55 = -_x_44*s_4 - c_4_t*d0_alpha_3_zx
-    _x_51 = _x_49*s_4 - _x_48*c_4_t
-    _y_56 = -_x_48*s_4 - _x_49*c_4_t
-    _x_52 = _y_54*s_4 - _y_53*c_4_t
-    _y_57 = -_y_53*s_4 - _y_54*c_4_t
-    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 4
-    d0_alpha_4_zx = o_4_t_2 + _x_42*s_4 - _y_48*c_4_t
-    d0_alpha_4_zy = -_x_42*c_4_t - _y_48*s_4 - c_5_t*o_4_t - o_4_y*s_5
-    d0_alpha_4_zz = _x_43 + o_4_t*s_5 - c_5_t*o_4_y
-    # (rrrrrr-A67) coefficient of the acceleration in: acceleration of the origin of joint 4
-    _x_53 = d0_a_o4_zy*s_4 - c_4_t*d0_a_o4_yy
-    _y_58 = -c_4_t*d0_a_o4_zy - d0_a_o4_yy*s_4
-    _x_54 = d0_a_o4_zz*s_4 - c_4_t*d0_a_o4_yz
-    _y_59 = -c_4_t*d0_a_o4_zz - d0_a_o4_yz*s_4
-    _x_55 = d0_a_o4_zx*s_4 - c_4_t*d0_a_o4_yx
-    _y_60 = -c_4_t*d0_a_o4_zx - d0_a_o4_yx*s_4
-    _x_56 = _x_54*s_4 - _x_53*c_4_t
-    _y_61 = -_x_53*s_4 - _x_54*c_4_t
-    _x_57 = _y_59*s_4 - _y_58*c_4_t
-    _y_62 = -_y_58*s_4 - _y_59*c_4_t
-    _x_58 = d0_a_o3_t_11*s_4 - _y_50*c_4_t
-    _y_63 = -_y_50*s_4 - c_4_t*d0_a_o3_t_11
+    o_4_t = end_p1_r8_y*w_4_t_7
+    o_4_t_2 = end_p1_r8_y*w_4_t_8
+    o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
     # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t_4
-    o_5_t_2 = end_p1_r8_y*w_5_t_5
-    o_5_y = -end_p1_r6_x*w_5_t_5 - end_p1_r8_x*w_5_t_4
-    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 4
-    _x_59 = d0_alpha_4_zy*s_5 - _y_57*c_5_t
-    _y_64 = -_y_57*s_5 - c_5_t*d0_alpha_4_zy
-    _x_60 = d0_alpha_4_zz*s_5 - _y_55*c_5_t
-    _y_65 = -_y_55*s_5 - c_5_t*d0_alpha_4_zz
-    _x_61 = d0_alpha_4_zx*s_5 - _x_52*c_5_t
-    _y_66 = -_x_52*s_5 - c_5_t*d0_alpha_4_zx
-    _x_62 = _x_60*s_5 - _x_59*c_5_t
-    _y_67 = -_x_59*s_5 - _x_60*c_5_t
-    _x_63 = _y_65*s_5 - _y_64*c_5_t
-    _y_68 = -_y_64*s_5 - _y_65*c_5_t
-    # (rrrrrr-A53) coefficient of the acceleration in: angular acceleration of link 5
-    d0_alpha_5_zx = o_5_t + _x_50*s_5 - _y_56*c_5_t
-    d0_alpha_5_zy = o_5_y - _x_50*c_5_t - _y_56*s_5
-    d0_alpha_5_zz = _x_51 + o_5_t_2
-    # (rrrrrr-N42) coefficient of the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-    d0_mu_5_xx = J_5_xx*_x_62 + J_5_xy*_x_63 + J_5_xz*d0_alpha_5_zx
-    d0_mu_5_xy = J_5_xx*_y_67 + J_5_xy*_y_68 + J_5_xz*d0_alpha_5_zy
-    d0_mu_5_xz = J_5_xx*_x_61 + J_5_xy*_y_66 + J_5_xz*d0_alpha_5_zz
-    d0_mu_5_yx = J_5_xy*_x_62 + J_5_yy*_x_63 + J_5_yz*d0_alpha_5_zx
-    d0_mu_5_yy = J_5_xy*_y_67 + J_5_yy*_y_68 + J_5_yz*d0_alpha_5_zy
-    d0_mu_5_yz = J_5_xy*_x_61 + J_5_yy*_y_66 + J_5_yz*d0_alpha_5_zz
-    d0_mu_5_zx = J_5_xz*_x_62 + J_5_yz*_x_63 + J_5_zz*d0_alpha_5_zx
-    d0_mu_5_zy = J_5_xz*_y_67 + J_5_yz*_y_68 + J_5_zz*d0_alpha_5_zy
-    d0_mu_5_zz = J_5_xz*_x_61 + J_5_yz*_y_66 + J_5_zz*d0_alpha_5_zz
-    _x_64 = -c_5_t*d0_mu_5_xx - d0_mu_5_yx*s_5
-    _y_69 = d0_mu_5_xx*s_5 - c_5_t*d0_mu_5_yx
-    _x_65 = -c_5_t*d0_mu_5_xy - d0_mu_5_yy*s_5
-    _y_70 = d0_mu_5_xy*s_5 - c_5_t*d0_mu_5_yy
-    # (rrrrrr-N56) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    d0_N_4_xx = (
-    d0_mu_5_zz + J_4_xz*d0_alpha_4_zx + J_4_zz*_x_51 - J_4_yz*_x_52 - _x_57*h_4_x - _x_58*h_4_y
+    o_5_t = end_p1_r8_y*w_5_t_8
+    o_5_t_2 = end_p1_r8_y*w_5_t_9
+    o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
+    # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d0_Gamma_1_x = (
+    Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
     )
-    d0_N_4_xy = (
-    J_4_xz*d0_alpha_4_zy + J_4_zz*_y_56 - J_4_yz*_y_57 - _y_62*h_4_x - _y_63*h_4_y -
-        c_5_t*d0_mu_5_zx - d0_mu_5_zy*s_5
+    d0_Gamma_1_y = (
+    Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
     )
-    d0_N_4_xz = (
-    J_4_xz*d0_alpha_4_zz + J_4_zz*_x_50 + d0_mu_5_zx*s_5 - J_4_yz*_y_55 - _x_45*h_4_y -
-        _y_60*h_4_x - c_5_t*d0_mu_5_zy
+    d0_Gamma_1_z = (
+    L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 - L_c5_r5_y*o_5_t_2
     )
-    d0_N_4_yx = (
-    J_4_yy*_x_52 + _x_56*h_4_x - J_4_xy*d0_alpha_4_zx - J_4_yz*_x_51 - _x_58*h_4_z -
-        c_5_t*d0_mu_5_xz - d0_mu_5_yz*s_5
+    # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d0_Gamma_2_t = L_c5_r2_y*o_5_t
+    d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
+    d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
+    d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
+    d0_Gamma_2_y = d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
+    d0_Gamma_2_z = (
+    Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
     )
-    d0_N_4_yy = (
-    J_4_yy*_y_57 + _y_61*h_4_x - J_4_xy*d0_alpha_4_zy - J_4_yz*_y_56 - _x_64*c_5_t - _x_65*s_5 -
-        _y_63*h_4_z
+    # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d0_Gamma_3_x = (
+    d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
     )
-    d0_N_4_yz = (
-    J_4_yy*_y_55 + _x_55*h_4_x + _x_64*s_5 - J_4_xy*d0_alpha_4_zz - J_4_yz*_x_50 - _x_45*h_4_z -
-        _x_65*c_5_t
+    d0_Gamma_3_y = (
+    d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
     )
-    d0_N_4_zx = (
-    J_4_xx*d0_alpha_4_zx + J_4_xz*_x_51 + _x_56*h_4_y + _x_57*h_4_z + d0_mu_5_xz*s_5 -
-        J_4_xy*_x_52 - c_5_t*d0_mu_5_yz
+    d0_Gamma_3_z = (
+    Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 - L_c3_2_r0_y*o_1_t_2
     )
-    d0_N_4_zy = (
-    J_4_xx*d0_alpha_4_zy + J_4_xz*_y_56 + _y_61*h_4_y + _y_62*h_4_z - J_4_xy*_y_57 - _y_69*c_5_t -
-        _y_70*s_5
+    # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d0_Gamma_4_x = L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
+    d0_Gamma_4_y = Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
+    d0_Gamma_4_z = (
+    Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
     )
-    d0_N_4_zz = (
-    J_4_xx*d0_alpha_4_zz + J_4_xz*_x_50 + _x_55*h_4_y + _y_60*h_4_z + _y_69*s_5 - J_4_xy*_y_55 -
-        _y_70*c_5_t
+    # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+    d0_Gamma_5_x = J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
+    d0_Gamma_5_y = J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
+    d0_Gamma_5_z = (
+    L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
     )
-    # (rrrrrr-N30) coefficient of the acceleration in: inertia force of link 4 less its weight
-    d0_f_4_xx = _x_52*h_4_x + _x_56*rrrrrr_link4_mass + d0_alpha_4_zx*h_4_y
-    d0_f_4_xy = _y_57*h_4_x + _y_61*rrrrrr_link4_mass + d0_alpha_4_zy*h_4_y
-    d0_f_4_xz = _x_55*rrrrrr_link4_mass + _y_55*h_4_x + d0_alpha_4_zz*h_4_y
-    d0_f_4_yx = _x_57*rrrrrr_link4_mass + d0_alpha_4_zx*h_4_z - _x_51*h_4_x
-    d0_f_4_yy = _y_62*rrrrrr_link4_mass + d0_alpha_4_zy*h_4_z - _y_56*h_4_x
-    d0_f_4_yz = _y_60*rrrrrr_link4_mass + d0_alpha_4_zz*h_4_z - _x_50*h_4_x
-    d0_f_4_zx = _x_58*rrrrrr_link4_mass - _x_51*h_4_y - _x_52*h_4_z
-    d0_f_4_zy = _y_63*rrrrrr_link4_mass - _y_56*h_4_y - _y_57*h_4_z
-    # (rrrrrr-N56) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    _x_66 = -c_4_t*d0_N_4_xx - d0_N_4_yx*s_4
-    _y_71 = d0_N_4_xx*s_4 - c_4_t*d0_N_4_yx
-    _x_67 = -c_4_t*d0_N_4_xy - d0_N_4_yy*s_4
-    _y_72 = d0_N_4_xy*s_4 - c_4_t*d0_N_4_yy
-    # (rrrrrr-N30) coefficient of the acceleration in: inertia force of link 4 less its weight
-    _x_68 = -c_4_t*d0_f_4_xx - d0_f_4_yx*s_4
-    _y_73 = d0_f_4_xx*s_4 - c_4_t*d0_f_4_yx
-    _x_69 = -c_4_t*d0_f_4_xy - d0_f_4_yy*s_4
-    _y_74 = d0_f_4_xy*s_4 - c_4_t*d0_f_4_yy
-    _x_70 = -c_4_t*d0_f_4_xz - d0_f_4_yz*s_4
-    _y_75 = d0_f_4_xz*s_4 - c_4_t*d0_f_4_yz
-    _x_71 = -_x_68*c_4_t - _x_69*s_4
-    _y_76 = _x_68*s_4 - _x_69*c_4_t
-    _x_72 = -_y_73*c_4_t - _y_74*s_4
-    _y_77 = _y_73*s_4 - _y_74*c_4_t
-    # (rrrrrr-N70) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d0_N_3_xx = (
-    d0_N_4_zz + J_3_xx*_x_43 + J_3_xy*_x_44 + J_3_xz*d0_alpha_3_zx + _x_47*h_3_y - _x_46*h_3_z
-    )
-    d0_N_3_xy = (
-    J_3_xx*_y_48 + J_3_xy*_y_49 + J_3_xz*d0_alpha_3_zy + _y_52*h_3_y - _y_51*h_3_z -
-        c_4_t*d0_N_4_zx - d0_N_4_zy*s_4
-    )
-    d0_N_3_xz = (
-    J_3_xx*_x_42 + J_3_xy*_y_47 + J_3_xz*d0_alpha_3_zz + d0_N_4_zx*s_4 + d0_a_o3_t_6*h_3_y -
-        c_4_t*d0_N_4_zy - d0_a_o3_t_12*h_3_z
-    )
-    d0_N_3_yx = (
-    J_3_xy*_x_43 + J_3_yy*_x_44 + J_3_yz*d0_alpha_3_zx + _x_45*h_3_z - _x_47*h_3_x -
-        _y_75*rrrrrr_joint4_offset_x - c_4_t*d0_N_4_xz - d0_N_4_yz*s_4
-    )
-    d0_N_3_yy = (
-    J_3_xy*_y_48 + J_3_yy*_y_49 + J_3_yz*d0_alpha_3_zy + _y_50*h_3_z - _x_66*c_4_t - _x_67*s_4 -
-        _x_72*rrrrrr_joint4_offset_x - _y_52*h_3_x
-    )
-    d0_N_3_yz = (
-    J_3_xy*_x_42 + J_3_yy*_y_47 + J_3_yz*d0_alpha_3_zz + _x_66*s_4 + d0_a_o3_t_11*h_3_z -
-        _x_67*c_4_t - _y_77*rrrrrr_joint4_offset_x - d0_a_o3_t_6*h_3_x
-    )
-    d0_N_3_zx = (
-    J_3_xz*_x_43 + J_3_yz*_x_44 + J_3_zz*d0_alpha_3_zx + _x_46*h_3_x +
-        _x_70*rrrrrr_joint4_offset_x + d0_N_4_xz*s_4 - _x_45*h_3_y - c_4_t*d0_N_4_yz
-    )
-    d0_N_3_zy = (
-    J_3_xz*_y_48 + J_3_yz*_y_49 + J_3_zz*d0_alpha_3_zy + _x_71*rrrrrr_joint4_offset_x +
-        _y_51*h_3_x - _y_50*h_3_y - _y_71*c_4_t - _y_72*s_4
-    )
-    d0_N_3_zz = (
-    J_3_xz*_x_42 + J_3_yz*_y_47 + J_3_zz*d0_alpha_3_zz + _y_71*s_4 + _y_76*rrrrrr_joint4_offset_x
-        + d0_a_o3_t_12*h_3_x - _y_72*c_4_t - d0_a_o3_t_11*h_3_y
-    )
-    # (rrrrrr-N74) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    d0_T_3_zx = _y_75 + _x_43*h_3_y + _x_47*rrrrrr_link3_mass - _x_44*h_3_x
-    d0_T_3_zy = _x_72 + _y_48*h_3_y + _y_52*rrrrrr_link3_mass - _y_49*h_3_x
-    # (rrrrrr-N70) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    _x_73 = c_3*d0_N_3_xx - d0_N_3_yx*s_3
-    _y_78 = c_3*d0_N_3_yx + d0_N_3_xx*s_3
-    _x_74 = c_3*d0_N_3_xy - d0_N_3_yy*s_3
-    _y_79 = c_3*d0_N_3_yy + d0_N_3_xy*s_3
-    # (rrrrrr-N74) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    _y_80 = (
-    c_3*(_x_70 + _x_46*rrrrrr_link3_mass + d0_alpha_3_zx*h_3_x - _x_43*h_3_z) + s_3*(_x_44*h_3_z +
-        _x_45*rrrrrr_link3_mass + _x_45*rrrrrr_link4_mass - _x_50*h_4_y - _y_55*h_4_z -
-        d0_alpha_3_zx*h_3_y)
-    )
-    _y_81 = (
-    c_3*(_x_71 + _y_51*rrrrrr_link3_mass + d0_alpha_3_zy*h_3_x - _y_48*h_3_z) + s_3*(_y_49*h_3_z +
-        _y_50*rrrrrr_link3_mass - c_4_t*d0_f_4_zx - d0_alpha_3_zy*h_3_y - d0_f_4_zy*s_4)
-    )
-    _y_82 = (
-    c_3*(_y_76 + d0_a_o3_t_12*rrrrrr_link3_mass + d0_alpha_3_zz*h_3_x - _x_42*h_3_z) +
-        s_3*(_y_47*h_3_z + d0_a_o3_t_11*rrrrrr_link3_mass + d0_f_4_zx*s_4 - c_4_t*d0_f_4_zy -
-        d0_alpha_3_zz*h_3_y)
-    )
-    # (rrrrrr-N88) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d0_N_2_yz = (
-    J_2_xy*d0_alpha_1_t_5 + J_2_yz*o_2_r2_y + c_3*d0_N_3_yz + d0_N_3_xz*s_3 -
-        J_2_yy*d0_alpha_1_t_6 - rrrrrr_joint3_offset_x*(_y_77 + _x_42*h_3_y +
-        d0_a_o3_t_6*rrrrrr_link3_mass - _y_47*h_3_x)
-    )
-    d0_N_2_zx = (
-    J_2_xz*_x_38 + J_2_yz*_x_39 + J_2_zz*o_2_r4_x + c_3*d0_N_3_zx +
-        rrrrrr_joint3_offset_x*(_y_80*c_3 - _y_81*s_3) - d0_N_3_zy*s_3
-    )
-    d0_N_2_zy = (
-    J_2_xz*_y_43 + J_2_yz*_y_44 + J_2_zz*o_2_r4_y + c_3*d0_N_3_zy + d0_N_3_zx*s_3 +
-        rrrrrr_joint3_offset_x*(_y_80*s_3 + _y_81*c_3)
-    )
-    d0_N_2_zz = (
-    d0_N_3_zz + J_2_xz*d0_alpha_1_t_5 + J_2_zz*o_2_r2_y + _y_82*rrrrrr_joint3_offset_x -
-        J_2_yz*d0_alpha_1_t_6
-    )
-    d0_N_2_t = (
-    c_2_t*(J_2_xy*_x_38 + J_2_yy*_x_39 + J_2_yz*o_2_r4_x + _y_78*c_3 - _y_79*s_3 -
-        rrrrrr_joint3_offset_x*(c_3*d0_T_3_zx - d0_T_3_zy*s_3))
-    )
-    _y_83 = s_2*(J_2_xx*_x_38 + J_2_xy*_x_39 + J_2_xz*o_2_r4_x + _x_73*c_3 - _x_74*s_3) - d0_N_2_t
-    d0_N_2_t_2 = (
-    c_2_t*(J_2_xy*_y_43 + J_2_yy*_y_44 + J_2_yz*o_2_r4_y + _y_78*s_3 + _y_79*c_3 -
-        rrrrrr_joint3_offset_x*(c_3*d0_T_3_zy + d0_T_3_zx*s_3))
-    )
-    _y_84 = (
-    s_2*(J_2_xx*_y_43 + J_2_xy*_y_44 + J_2_xz*o_2_r4_y + _x_73*s_3 + _x_74*c_3) - d0_N_2_t_2
-    )
-    # (rrrrrr-N106) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d0_N_1_zx = (
-    J_1_xx*o_1_r2_y + s_2*(J_2_xx*d0_alpha_1_t_5 + J_2_xz*o_2_r2_y + c_3*d0_N_3_xz -
-        J_2_xy*d0_alpha_1_t_6 - d0_N_3_yz*s_3) - c_2_t*d0_N_2_yz
-    )
-    d0_N_1_zy = J_1_xx*o_1_r5_x - _y_83*c_2_t - _y_84*s_2
-    d0_N_1_zz = J_1_xx*o_1_r5_y + _y_83*s_2 - _y_84*c_2_t
-    # (rrrrrr-N110) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d0_Gamma_1_r1_x = d0_N_1_zz*s_2 - c_2_t*d0_N_1_zy
-    d0_Gamma_1_r1_y = -c_2_t*d0_N_1_zz - d0_N_1_zy*s_2
-    d0_Gamma_1_r2_x = c_3*d0_Gamma_1_r1_x + d0_Gamma_1_r1_y*s_3
-    d0_Gamma_1_r2_y = c_3*d0_Gamma_1_r1_y - d0_Gamma_1_r1_x*s_3
-    d0_Gamma_1_r4_x = d0_N_1_zx*s_4 - c_4_t*d0_Gamma_1_r2_y
-    d0_Gamma_1_r4_y = -c_4_t*d0_N_1_zx - d0_Gamma_1_r2_y*s_4
-    d0_Gamma_1_r6_x = d0_Gamma_1_r2_x*s_5 - c_5_t*d0_Gamma_1_r4_y
-    d0_Gamma_1_r6_y = -c_5_t*d0_Gamma_1_r2_x - d0_Gamma_1_r4_y*s_5
-    # (rrrrrr-N96) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d0_Gamma_2_r0_x = c_3*d0_N_2_zx + d0_N_2_zy*s_3
-    d0_Gamma_2_r0_y = c_3*d0_N_2_zy - d0_N_2_zx*s_3
-    d0_Gamma_2_r2_x = d0_N_2_zz*s_4 - c_4_t*d0_Gamma_2_r0_y
-    d0_Gamma_2_r2_y = -c_4_t*d0_N_2_zz - d0_Gamma_2_r0_y*s_4
-    d0_Gamma_2_r4_x = d0_Gamma_2_r0_x*s_5 - c_5_t*d0_Gamma_2_r2_y
-    d0_Gamma_2_r4_y = -c_5_t*d0_Gamma_2_r0_x - d0_Gamma_2_r2_y*s_5
-    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d0_Gamma_3_r1_x = d0_N_3_zz*s_4 - c_4_t*d0_N_3_zy
-    d0_Gamma_3_r1_y = -c_4_t*d0_N_3_zz - d0_N_3_zy*s_4
-    d0_Gamma_3_r3_x = d0_N_3_zx*s_5 - c_5_t*d0_Gamma_3_r1_y
-    d0_Gamma_3_r3_y = -c_5_t*d0_N_3_zx - d0_Gamma_3_r1_y*s_5
-    # (rrrrrr-N60) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d0_Gamma_4_r1_x = d0_N_4_zz*s_5 - c_5_t*d0_N_4_zy
-    d0_Gamma_4_r1_y = -c_5_t*d0_N_4_zz - d0_N_4_zy*s_5
-    # (rrrrrr-N122) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
+    d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
+    d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
+    d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
+    d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
+    d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
+    d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
+    d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
+    d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
+    d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
+    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d0_c_xx = (
-    d0_Gamma_2_r4_x*w_2_t + d0_Gamma_4_r1_x*w_4_t + d0_alpha_5_zx*h_5_y + d0_mu_5_zx*w_5_t -
-        _x_63*h_5_z - d0_Gamma_1_r6_x*w_1_t_40 - d0_Gamma_3_r3_x*w_3_t
+    d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2 -
+        d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
     )
     d0_c_xy = (
-    d0_Gamma_2_r4_y*w_2_t + d0_Gamma_4_r1_y*w_4_t + d0_alpha_5_zy*h_5_y + d0_mu_5_zy*w_5_t -
-        _y_68*h_5_z - d0_Gamma_1_r6_y*w_1_t_40 - d0_Gamma_3_r3_y*w_3_t
+    d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2 -
+        d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
     )
     d0_c_xz = (
-    d0_Gamma_2_r2_x*w_2_t + d0_N_4_zx*w_4_t + d0_alpha_5_zz*h_5_y + d0_mu_5_zz*w_5_t - _y_66*h_5_z
-        - d0_Gamma_1_r4_x*w_1_t_40 - d0_Gamma_3_r1_x*w_3_t
+    d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2 -
+        d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
     )
     d0_c_yx = (
-    _x_62*h_5_z + d0_Gamma_1_r6_x*w_1_t_53 + d0_Gamma_3_r3_x*w_3_t_2 + d0_Gamma_4_r1_x*w_4_t_2 -
-        d0_Gamma_2_r4_x*w_2_t_2 - d0_alpha_5_zx*h_5_x - d0_mu_5_zx*w_5_t_2
+    d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
+        d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
     )
     d0_c_yy = (
-    _y_67*h_5_z + d0_Gamma_1_r6_y*w_1_t_53 + d0_Gamma_3_r3_y*w_3_t_2 + d0_Gamma_4_r1_y*w_4_t_2 -
-        d0_Gamma_2_r4_y*w_2_t_2 - d0_alpha_5_zy*h_5_x - d0_mu_5_zy*w_5_t_2
+    d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
+        d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
     )
     d0_c_yz = (
-    _x_61*h_5_z + d0_Gamma_1_r4_x*w_1_t_53 + d0_Gamma_3_r1_x*w_3_t_2 + d0_N_4_zx*w_4_t_2 -
-        d0_Gamma_2_r2_x*w_2_t_2 - d0_alpha_5_zz*h_5_x - d0_mu_5_zz*w_5_t_2
+    d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
+        d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
     )
     d0_c_zx = (
-    _x_63*h_5_x + d0_Gamma_2_r4_x*w_2_t_3 - _x_62*h_5_y - d0_Gamma_1_r6_x*w_1_t_64 -
-        d0_Gamma_3_r3_x*w_3_t_3 - d0_Gamma_4_r1_x*w_4_t_3 - d0_mu_5_zx*w_5_t_3
+    d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x -
+        d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
     )
     d0_c_zy = (
-    _y_68*h_5_x + d0_Gamma_2_r4_y*w_2_t_3 - _y_67*h_5_y - d0_Gamma_1_r6_y*w_1_t_64 -
-        d0_Gamma_3_r3_y*w_3_t_3 - d0_Gamma_4_r1_y*w_4_t_3 - d0_mu_5_zy*w_5_t_3
+    d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x -
+        d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
     )
     d0_c_zz = (
-    _y_66*h_5_x + d0_Gamma_2_r2_x*w_2_t_3 - _x_61*h_5_y - d0_Gamma_1_r4_x*w_1_t_64 -
-        d0_Gamma_3_r1_x*w_3_t_3 - d0_N_4_zx*w_4_t_3 - d0_mu_5_zz*w_5_t_3
+    d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x -
+        d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
     )
     # (M2) coupling block of M
     q_in_base_x = (
@@ -2153,402 +1857,241 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
     M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
     M_ta_t_11 = M_ta_t_2 - M_ta_t_6
-    # (rrrrrr-N122) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    _x_75 = -c_5_t*d0_c_xx - d0_c_yx*s_5
-    _y_85 = d0_c_xx*s_5 - c_5_t*d0_c_yx
-    _x_76 = -c_5_t*d0_c_xy - d0_c_yy*s_5
-    _y_86 = d0_c_xy*s_5 - c_5_t*d0_c_yy
-    _x_77 = -c_5_t*d0_c_xz - d0_c_yz*s_5
-    _y_87 = d0_c_xz*s_5 - c_5_t*d0_c_yz
-    _x_78 = -_x_75*c_5_t - _x_76*s_5
-    _y_88 = _x_75*s_5 - _x_76*c_5_t
-    _x_79 = -_y_85*c_5_t - _y_86*s_5
-    _y_89 = _y_85*s_5 - _y_86*c_5_t
-    _x_80 = -c_5_t*d0_c_zx - d0_c_zy*s_5
-    _y_90 = d0_c_zx*s_5 - c_5_t*d0_c_zy
-    _x_81 = -_x_77*s_4 - c_4_t*d0_c_zz
-    _y_91 = d0_c_zz*s_4 - _x_77*c_4_t
-    _x_82 = -_x_78*s_4 - _x_80*c_4_t
-    _y_92 = _x_80*s_4 - _x_78*c_4_t
-    _x_83 = -_y_88*s_4 - _y_90*c_4_t
-    _y_93 = _y_90*s_4 - _y_88*c_4_t
-    _x_84 = -_x_81*c_4_t - _x_82*s_4
-    _y_94 = _x_81*s_4 - _x_82*c_4_t
-    _x_85 = -_y_91*c_4_t - _y_92*s_4
-    _y_95 = _y_91*s_4 - _y_92*c_4_t
-    _x_86 = -_x_79*s_4 - _y_87*c_4_t
-    _y_96 = _y_87*s_4 - _x_79*c_4_t
-    _x_87 = _y_89*c_3 - _x_83*s_3
-    _y_97 = _x_83*c_3 + _y_89*s_3
-    _x_88 = _x_86*c_3 - _x_84*s_3
-    _y_98 = _x_84*c_3 + _x_86*s_3
-    _x_89 = _y_96*c_3 - _y_94*s_3
-    _y_99 = _y_94*c_3 + _y_96*s_3
-    _x_90 = _x_87*c_3 - _x_88*s_3
-    _y_100 = _x_87*s_3 + _x_88*c_3
-    _x_91 = _y_97*c_3 - _y_98*s_3
-    _y_101 = _y_97*s_3 + _y_98*c_3
-    _x_92 = _y_93*c_3 - _x_85*s_3
-    _y_102 = _x_85*c_3 + _y_93*s_3
-    _x_93 = -_x_90*c_2_t - _x_91*s_2
-    _y_103 = _x_90*s_2 - _x_91*c_2_t
-    _x_94 = -_y_100*c_2_t - _y_101*s_2
-    _y_104 = _y_100*s_2 - _y_101*c_2_t
-    _x_95 = -_x_89*c_2_t - _y_99*s_2
-    _y_105 = _x_89*s_2 - _y_99*c_2_t
-    _x_96 = -_x_93*c_2_t - _x_94*s_2
-    _y_106 = _x_93*s_2 - _x_94*c_2_t
-    _x_97 = -_y_103*c_2_t - _y_104*s_2
-    _y_107 = _y_103*s_2 - _y_104*c_2_t
-    _x_98 = -_x_92*c_2_t - _y_102*s_2
-    _y_108 = _x_92*s_2 - _y_102*c_2_t
-    _x_99 = -_x_95*s_1 - _y_95*c_1_t
-    _y_109 = _y_95*s_1 - _x_95*c_1_t
-    _x_100 = -_x_96*s_1 - _x_98*c_1_t
-    _y_110 = _x_98*s_1 - _x_96*c_1_t
-    _x_101 = -_y_106*s_1 - _y_108*c_1_t
-    _y_111 = _y_108*s_1 - _y_106*c_1_t
-    _x_102 = -_x_100*s_1 - _x_99*c_1_t
-    _y_112 = _x_99*s_1 - _x_100*c_1_t
-    _x_103 = -_y_109*c_1_t - _y_110*s_1
-    _y_113 = _y_109*s_1 - _y_110*c_1_t
-    _x_104 = -_x_97*s_1 - _y_105*c_1_t
-    _y_114 = _y_105*s_1 - _x_97*c_1_t
-    _x_105 = (
-    _x_102*rrrrrr_base_frame_xy + _x_103*rrrrrr_base_frame_xz + _x_104*rrrrrr_base_frame_xx
+    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d0_c_in_base_x = (
+    axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
     )
-    _y_115 = (
-    _x_102*rrrrrr_base_frame_yy + _x_103*rrrrrr_base_frame_yz + _x_104*rrrrrr_base_frame_yx
+    d0_c_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
     )
-    _z = _x_102*rrrrrr_base_frame_zy + _x_103*rrrrrr_base_frame_zz + _x_104*rrrrrr_base_frame_zx
-    _x_106 = (
-    _y_112*rrrrrr_base_frame_xy + _y_113*rrrrrr_base_frame_xz + _y_114*rrrrrr_base_frame_xx
+    d0_c_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
     )
-    _y_116 = (
-    _y_112*rrrrrr_base_frame_yy + _y_113*rrrrrr_base_frame_yz + _y_114*rrrrrr_base_frame_yx
+    d0_c_in_base_x_2 = (
+    axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
     )
-    _z_2 = _y_112*rrrrrr_base_frame_zy + _y_113*rrrrrr_base_frame_zz + _y_114*rrrrrr_base_frame_zx
-    _x_107 = (
-    _x_101*rrrrrr_base_frame_xy + _y_107*rrrrrr_base_frame_xx + _y_111*rrrrrr_base_frame_xz
+    d0_c_in_base_y_2 = (
+    axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
     )
-    _y_117 = (
-    _x_101*rrrrrr_base_frame_yy + _y_107*rrrrrr_base_frame_yx + _y_111*rrrrrr_base_frame_yz
+    d0_c_in_base_z_2 = (
+    axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
     )
-    _z_3 = _x_101*rrrrrr_base_frame_zy + _y_107*rrrrrr_base_frame_zx + _y_111*rrrrrr_base_frame_zz
-    _y_118 = (
-    _x_105*rrrrrr_base_frame_yy + _x_106*rrrrrr_base_frame_yz + _x_107*rrrrrr_base_frame_yx
+    d0_c_in_base_x_3 = (
+    axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
     )
-    _z_4 = _x_105*rrrrrr_base_frame_zy + _x_106*rrrrrr_base_frame_zz + _x_107*rrrrrr_base_frame_zx
-    _x_108 = (
-    _y_115*rrrrrr_base_frame_xy + _y_116*rrrrrr_base_frame_xz + _y_117*rrrrrr_base_frame_xx
+    d0_c_in_base_y_3 = (
+    axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
     )
-    _y_119 = (
-    _y_115*rrrrrr_base_frame_yy + _y_116*rrrrrr_base_frame_yz + _y_117*rrrrrr_base_frame_yx
+    d0_c_in_base_z_3 = (
+    axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
     )
-    _z_5 = _y_115*rrrrrr_base_frame_zy + _y_116*rrrrrr_base_frame_zz + _y_117*rrrrrr_base_frame_zx
-    _x_109 = _z*rrrrrr_base_frame_xy + _z_2*rrrrrr_base_frame_xz + _z_3*rrrrrr_base_frame_xx
-    _y_120 = _z*rrrrrr_base_frame_yy + _z_2*rrrrrr_base_frame_yz + _z_3*rrrrrr_base_frame_yx
-    _z_6 = _z*rrrrrr_base_frame_zy + _z_2*rrrrrr_base_frame_zz + _z_3*rrrrrr_base_frame_zx
+    d0_c_in_base_y_4 = (
+    axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
+    )
+    d0_c_in_base_z_4 = (
+    axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
+    )
+    d0_c_in_base_x_4 = (
+    axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
+    )
+    d0_c_in_base_y_5 = (
+    axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
+    )
+    d0_c_in_base_z_5 = (
+    axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
+    )
+    d0_c_in_base_x_5 = (
+    axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
+    )
+    d0_c_in_base_y_6 = (
+    axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
+    )
+    d0_c_in_base_z_6 = (
+    axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
+    )
     # (M2) coupling block of M
     M_ta_t_12 = (
-    M_ta_t - M_ta_t_2 - _x_105*rrrrrr_base_frame_xy - _x_106*rrrrrr_base_frame_xz -
-        _x_107*rrrrrr_base_frame_xx
+    M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
+        axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
     )
-    M_ta_t_13 = M_ta_t_3 + _y_118
-    M_ta_t_14 = M_ta_t_4 - _z_4
-    M_ta_t_15 = M_ta_t_5 - _x_108
-    M_ta_t_16 = M_ta_t_7 + _y_119
-    M_ta_t_17 = M_ta_t_8 - _z_5
-    M_ta_t_18 = M_ta_t_9 - _x_109
-    M_ta_t_19 = M_ta_t_10 + _y_120
-    M_ta_t_20 = M_ta_t_11 - _z_6
-    # (rrrrrr-N118) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d0_G_m_xx = (
-    d0_Gamma_1_r6_x*o_1_t + d0_Gamma_3_r3_x*o_3_t + d0_Gamma_4_r1_x*o_4_t + d0_mu_5_zx*o_5_t -
-        d0_Gamma_2_r4_x*o_2_t
+    M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
+    M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
+    M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
+    M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
+    M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
+    M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
+    M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
+    M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
+    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_x = (
+    d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93 -
+        d0_Gamma_5_x*w_5_t_8
     )
-    d0_G_m_xy = (
-    d0_Gamma_1_r6_y*o_1_t + d0_Gamma_3_r3_y*o_3_t + d0_Gamma_4_r1_y*o_4_t + d0_mu_5_zy*o_5_t -
-        d0_Gamma_2_r4_y*o_2_t
+    d0_G_m1_y = (
+    d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93 -
+        d0_Gamma_5_y*w_5_t_8
     )
-    d0_G_m_xz = (
-    d0_Gamma_1_r4_x*o_1_t + d0_Gamma_3_r1_x*o_3_t + d0_N_4_zx*o_4_t + d0_mu_5_zz*o_5_t -
-        d0_Gamma_2_r2_x*o_2_t
+    d0_G_m1_z = (
+    d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93 -
+        d0_Gamma_5_z*w_5_t_8
     )
-    d0_G_m_yx = (
-    d0_Gamma_1_r6_x*o_1_y + d0_Gamma_2_r4_x*o_2_y + d0_Gamma_3_r3_x*o_3_y + d0_Gamma_4_r1_x*o_4_y
-        + d0_mu_5_zx*o_5_y
+    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d0_G_m2_x = (
+    d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94 -
+        d0_Gamma_5_x*w_5_t_9
     )
-    d0_G_m_yy = (
-    d0_Gamma_1_r6_y*o_1_y + d0_Gamma_2_r4_y*o_2_y + d0_Gamma_3_r3_y*o_3_y + d0_Gamma_4_r1_y*o_4_y
-        + d0_mu_5_zy*o_5_y
+    d0_G_m2_y = (
+    d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94 -
+        d0_Gamma_5_y*w_5_t_9
     )
-    d0_G_m_yz = (
-    d0_Gamma_1_r4_x*o_1_y + d0_Gamma_2_r2_x*o_2_y + d0_Gamma_3_r1_x*o_3_y + d0_N_4_zx*o_4_y +
-        d0_mu_5_zz*o_5_y
+    d0_G_m2_z = (
+    d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94 -
+        d0_Gamma_5_z*w_5_t_9
     )
-    d0_G_m_zx = (
-    d0_Gamma_1_r6_x*o_1_t_2 + d0_Gamma_3_r3_x*o_3_t_2 + d0_Gamma_4_r1_x*o_4_t_2 +
-        d0_mu_5_zx*o_5_t_2 - d0_Gamma_2_r4_x*o_2_t_2
+    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_x = (
+    d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
+        d_Gamma_5_x*w_5_t_8
     )
-    d0_G_m_zy = (
-    d0_Gamma_1_r6_y*o_1_t_2 + d0_Gamma_3_r3_y*o_3_t_2 + d0_Gamma_4_r1_y*o_4_t_2 +
-        d0_mu_5_zy*o_5_t_2 - d0_Gamma_2_r4_y*o_2_t_2
+    d_G_m1_y = (
+    d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
+        d_Gamma_5_y*w_5_t_8
     )
-    d0_G_m_zz = (
-    d0_Gamma_1_r4_x*o_1_t_2 + d0_Gamma_3_r1_x*o_3_t_2 + d0_N_4_zx*o_4_t_2 + d0_mu_5_zz*o_5_t_2 -
-        d0_Gamma_2_r2_x*o_2_t_2
+    d_G_m1_z = (
+    d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
+        d_Gamma_5_t_6*w_5_t_8
     )
-    # (rrrrrr-N119) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_m_xx = (
-    d_Gamma_1_r6_x*o_1_t + d_Gamma_3_r3_x*o_3_t + d_Gamma_4_r1_x*o_4_t + d_mu_5_zx*o_5_t -
-        d_Gamma_2_r4_x*o_2_t
+    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d_G_m2_x = (
+    d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
+        d_Gamma_5_x*w_5_t_9
     )
-    d_G_m_xy = (
-    d_Gamma_1_r6_y*o_1_t + d_Gamma_3_r3_y*o_3_t + d_Gamma_4_r1_y*o_4_t + d_mu_5_zy*o_5_t -
-        d_Gamma_2_r4_y*o_2_t
+    d_G_m2_y = (
+    d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
+        d_Gamma_5_y*w_5_t_9
     )
-    d_G_m_xz = (
-    d_Gamma_1_r4_x*o_1_t + d_Gamma_3_r1_x*o_3_t + d_N_4_zx*o_4_t + d_mu_5_t_3*o_5_t -
-        d_Gamma_2_r2_x*o_2_t
+    d_G_m2_z = (
+    d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
+        d_Gamma_5_t_6*w_5_t_9
     )
-    d_G_m_yx = (
-    d_Gamma_1_r6_x*o_1_y + d_Gamma_2_r4_x*o_2_y + d_Gamma_3_r3_x*o_3_y + d_Gamma_4_r1_x*o_4_y +
-        d_mu_5_zx*o_5_y
+    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+    n_m1_in_base_x = axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
+    n_m1_in_base_y = axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
+    n_m1_in_base_z = axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
+    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_in_base_x = (
+    axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
     )
-    d_G_m_yy = (
-    d_Gamma_1_r6_y*o_1_y + d_Gamma_2_r4_y*o_2_y + d_Gamma_3_r3_y*o_3_y + d_Gamma_4_r1_y*o_4_y +
-        d_mu_5_zy*o_5_y
+    d_G_m1_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
     )
-    d_G_m_yz = (
-    d_Gamma_1_r4_x*o_1_y + d_Gamma_2_r2_x*o_2_y + d_Gamma_3_r1_x*o_3_y + d_N_4_zx*o_4_y +
-        d_mu_5_t_3*o_5_y
+    d_G_m1_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
     )
-    d_G_m_zx = (
-    d_Gamma_1_r6_x*o_1_t_2 + d_Gamma_3_r3_x*o_3_t_2 + d_Gamma_4_r1_x*o_4_t_2 + d_mu_5_zx*o_5_t_2 -
-        d_Gamma_2_r4_x*o_2_t_2
+    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
+    n_m2_in_base_x = (
+    axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
     )
-    d_G_m_zy = (
-    d_Gamma_1_r6_y*o_1_t_2 + d_Gamma_3_r3_y*o_3_t_2 + d_Gamma_4_r1_y*o_4_t_2 + d_mu_5_zy*o_5_t_2 -
-        d_Gamma_2_r4_y*o_2_t_2
+    n_m2_in_base_y = (
+    axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
     )
-    d_G_m_zz = (
-    d_Gamma_1_r4_x*o_1_t_2 + d_Gamma_3_r1_x*o_3_t_2 + d_N_4_zx*o_4_t_2 + d_mu_5_t_3*o_5_t_2 -
-        d_Gamma_2_r2_x*o_2_t_2
+    n_m2_in_base_z = (
+    axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
     )
-    # (rrrrrr-N128) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_110 = c_5_t*d_G_m_xx + d_G_m_yx*s_5
-    _y_121 = c_5_t*d_G_m_yx - d_G_m_xx*s_5
-    _x_111 = c_5_t*d_G_m_xy + d_G_m_yy*s_5
-    _y_122 = c_5_t*d_G_m_yy - d_G_m_xy*s_5
-    _x_112 = c_5_t*d_G_m_xz + d_G_m_yz*s_5
-    _y_123 = c_5_t*d_G_m_yz - d_G_m_xz*s_5
-    _x_113 = -_x_110*c_5_t - _x_111*s_5
-    _y_124 = _x_110*s_5 - _x_111*c_5_t
-    _x_114 = -_y_121*c_5_t - _y_122*s_5
-    _y_125 = _y_121*s_5 - _y_122*c_5_t
-    _x_115 = c_5_t*d_G_m_zx + d_G_m_zy*s_5
-    _y_126 = c_5_t*d_G_m_zy - d_G_m_zx*s_5
-    _x_116 = c_4_t*d_G_m_zz - _x_112*s_4
-    _y_127 = -_x_112*c_4_t - d_G_m_zz*s_4
-    _x_117 = -_x_113*s_4 - _x_115*c_4_t
-    _y_128 = _x_115*s_4 - _x_113*c_4_t
-    _x_118 = -_y_124*s_4 - _y_126*c_4_t
-    _y_129 = _y_126*s_4 - _y_124*c_4_t
-    _x_119 = -_x_116*c_4_t - _x_117*s_4
-    _y_130 = _x_116*s_4 - _x_117*c_4_t
-    _x_120 = -_y_127*c_4_t - _y_128*s_4
-    _y_131 = _y_127*s_4 - _y_128*c_4_t
-    _x_121 = -_x_114*s_4 - _y_123*c_4_t
-    _y_132 = _y_123*s_4 - _x_114*c_4_t
-    _x_122 = _y_125*c_3 - _x_118*s_3
-    _y_133 = _x_118*c_3 + _y_125*s_3
-    _x_123 = _x_121*c_3 - _x_119*s_3
-    _y_134 = _x_119*c_3 + _x_121*s_3
-    _x_124 = _y_132*c_3 - _y_130*s_3
-    _y_135 = _y_130*c_3 + _y_132*s_3
-    _x_125 = _x_122*c_3 - _x_123*s_3
-    _y_136 = _x_122*s_3 + _x_123*c_3
-    _x_126 = _y_133*c_3 - _y_134*s_3
-    _y_137 = _y_133*s_3 + _y_134*c_3
-    _x_127 = _y_129*c_3 - _x_120*s_3
-    _y_138 = _x_120*c_3 + _y_129*s_3
-    _x_128 = -_x_125*c_2_t - _x_126*s_2
-    _y_139 = _x_125*s_2 - _x_126*c_2_t
-    _x_129 = -_y_136*c_2_t - _y_137*s_2
-    _y_140 = _y_136*s_2 - _y_137*c_2_t
-    _x_130 = -_x_124*c_2_t - _y_135*s_2
-    _y_141 = _x_124*s_2 - _y_135*c_2_t
-    _x_131 = -_x_128*c_2_t - _x_129*s_2
-    _y_142 = _x_128*s_2 - _x_129*c_2_t
-    _x_132 = -_y_139*c_2_t - _y_140*s_2
-    _y_143 = _y_139*s_2 - _y_140*c_2_t
-    _x_133 = -_x_127*c_2_t - _y_138*s_2
-    _y_144 = _x_127*s_2 - _y_138*c_2_t
-    _x_134 = -_x_130*s_1 - _y_131*c_1_t
-    _y_145 = _y_131*s_1 - _x_130*c_1_t
-    _x_135 = -_x_131*s_1 - _x_133*c_1_t
-    _y_146 = _x_133*s_1 - _x_131*c_1_t
-    _x_136 = -_y_142*s_1 - _y_144*c_1_t
-    _y_147 = _y_144*s_1 - _y_142*c_1_t
-    _x_137 = -_x_134*c_1_t - _x_135*s_1
-    _y_148 = _x_134*s_1 - _x_135*c_1_t
-    _x_138 = -_y_145*c_1_t - _y_146*s_1
-    _y_149 = _y_145*s_1 - _y_146*c_1_t
-    _x_139 = -_x_132*s_1 - _y_141*c_1_t
-    _y_150 = _y_141*s_1 - _x_132*c_1_t
-    _x_140 = (
-    _x_137*rrrrrr_base_frame_xy + _x_138*rrrrrr_base_frame_xz + _x_139*rrrrrr_base_frame_xx
+    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d_G_m2_in_base_x = (
+    axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
     )
-    _y_151 = (
-    _x_137*rrrrrr_base_frame_yy + _x_138*rrrrrr_base_frame_yz + _x_139*rrrrrr_base_frame_yx
+    d_G_m2_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
     )
-    _z_7 = _x_137*rrrrrr_base_frame_zy + _x_138*rrrrrr_base_frame_zz + _x_139*rrrrrr_base_frame_zx
-    _x_141 = (
-    _y_148*rrrrrr_base_frame_xy + _y_149*rrrrrr_base_frame_xz + _y_150*rrrrrr_base_frame_xx
+    d_G_m2_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
     )
-    _y_152 = (
-    _y_148*rrrrrr_base_frame_yy + _y_149*rrrrrr_base_frame_yz + _y_150*rrrrrr_base_frame_yx
+    # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
+    d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
+    d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
+    d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
+    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
     )
-    _z_8 = _y_148*rrrrrr_base_frame_zy + _y_149*rrrrrr_base_frame_zz + _y_150*rrrrrr_base_frame_zx
-    _x_142 = (
-    _x_136*rrrrrr_base_frame_xy + _y_143*rrrrrr_base_frame_xx + _y_147*rrrrrr_base_frame_xz
+    d0_G_m1_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
     )
-    _y_153 = (
-    _x_136*rrrrrr_base_frame_yy + _y_143*rrrrrr_base_frame_yx + _y_147*rrrrrr_base_frame_yz
+    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d0_G_m2_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
     )
-    _z_9 = _x_136*rrrrrr_base_frame_zy + _y_143*rrrrrr_base_frame_zx + _y_147*rrrrrr_base_frame_zz
-    _x_143 = (
-    _x_140*rrrrrr_base_frame_xy + _x_141*rrrrrr_base_frame_xz + _x_142*rrrrrr_base_frame_xx
-    )
-    _y_154 = (
-    _x_140*rrrrrr_base_frame_yy + _x_141*rrrrrr_base_frame_yz + _x_142*rrrrrr_base_frame_yx
-    )
-    _z_10 = (
-    _x_140*rrrrrr_base_frame_zy + _x_141*rrrrrr_base_frame_zz + _x_142*rrrrrr_base_frame_zx
-    )
-    _x_144 = (
-    _y_151*rrrrrr_base_frame_xy + _y_152*rrrrrr_base_frame_xz + _y_153*rrrrrr_base_frame_xx
-    )
-    # (rrrrrr-N127) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_145 = c_5_t*d0_G_m_xx + d0_G_m_yx*s_5
-    _y_155 = c_5_t*d0_G_m_yx - d0_G_m_xx*s_5
-    _x_146 = c_5_t*d0_G_m_xy + d0_G_m_yy*s_5
-    _y_156 = c_5_t*d0_G_m_yy - d0_G_m_xy*s_5
-    _x_147 = c_5_t*d0_G_m_xz + d0_G_m_yz*s_5
-    _y_157 = c_5_t*d0_G_m_yz - d0_G_m_xz*s_5
-    _x_148 = -_x_145*c_5_t - _x_146*s_5
-    _y_158 = _x_145*s_5 - _x_146*c_5_t
-    _x_149 = -_y_155*c_5_t - _y_156*s_5
-    _y_159 = _y_155*s_5 - _y_156*c_5_t
-    _x_150 = c_5_t*d0_G_m_zx + d0_G_m_zy*s_5
-    _y_160 = c_5_t*d0_G_m_zy - d0_G_m_zx*s_5
-    _x_151 = c_4_t*d0_G_m_zz - _x_147*s_4
-    _y_161 = -_x_147*c_4_t - d0_G_m_zz*s_4
-    _x_152 = -_x_148*s_4 - _x_150*c_4_t
-    _y_162 = _x_150*s_4 - _x_148*c_4_t
-    _x_153 = -_y_158*s_4 - _y_160*c_4_t
-    _y_163 = _y_160*s_4 - _y_158*c_4_t
-    _x_154 = -_x_151*c_4_t - _x_152*s_4
-    _y_164 = _x_151*s_4 - _x_152*c_4_t
-    _x_155 = -_y_161*c_4_t - _y_162*s_4
-    _y_165 = _y_161*s_4 - _y_162*c_4_t
-    _x_156 = -_x_149*s_4 - _y_157*c_4_t
-    _y_166 = _y_157*s_4 - _x_149*c_4_t
-    _x_157 = _y_159*c_3 - _x_153*s_3
-    _y_167 = _x_153*c_3 + _y_159*s_3
-    _x_158 = _x_156*c_3 - _x_154*s_3
-    _y_168 = _x_154*c_3 + _x_156*s_3
-    _x_159 = _y_166*c_3 - _y_164*s_3
-    _y_169 = _y_164*c_3 + _y_166*s_3
-    _x_160 = _x_157*c_3 - _x_158*s_3
-    _y_170 = _x_157*s_3 + _x_158*c_3
-    _x_161 = _y_167*c_3 - _y_168*s_3
-    _y_171 = _y_167*s_3 + _y_168*c_3
-    _x_162 = _y_163*c_3 - _x_155*s_3
-    _y_172 = _x_155*c_3 + _y_163*s_3
-    _x_163 = -_x_160*c_2_t - _x_161*s_2
-    _y_173 = _x_160*s_2 - _x_161*c_2_t
-    _x_164 = -_y_170*c_2_t - _y_171*s_2
-    _y_174 = _y_170*s_2 - _y_171*c_2_t
-    _x_165 = -_x_159*c_2_t - _y_169*s_2
-    _y_175 = _x_159*s_2 - _y_169*c_2_t
-    _x_166 = -_x_163*c_2_t - _x_164*s_2
-    _y_176 = _x_163*s_2 - _x_164*c_2_t
-    _x_167 = -_y_173*c_2_t - _y_174*s_2
-    _y_177 = _y_173*s_2 - _y_174*c_2_t
-    _x_168 = -_x_162*c_2_t - _y_172*s_2
-    _y_178 = _x_162*s_2 - _y_172*c_2_t
-    _x_169 = -_x_165*s_1 - _y_165*c_1_t
-    _y_179 = _y_165*s_1 - _x_165*c_1_t
-    _x_170 = -_x_166*s_1 - _x_168*c_1_t
-    _y_180 = _x_168*s_1 - _x_166*c_1_t
-    _x_171 = -_y_176*s_1 - _y_178*c_1_t
-    _y_181 = _y_178*s_1 - _y_176*c_1_t
-    _x_172 = -_x_169*c_1_t - _x_170*s_1
-    _y_182 = _x_169*s_1 - _x_170*c_1_t
-    _x_173 = -_y_179*c_1_t - _y_180*s_1
-    _y_183 = _y_179*s_1 - _y_180*c_1_t
-    _x_174 = -_x_167*s_1 - _y_175*c_1_t
-    _y_184 = _y_175*s_1 - _x_167*c_1_t
-    _x_175 = (
-    _x_172*rrrrrr_base_frame_xy + _x_173*rrrrrr_base_frame_xz + _x_174*rrrrrr_base_frame_xx
-    )
-    _y_185 = (
-    _x_172*rrrrrr_base_frame_yy + _x_173*rrrrrr_base_frame_yz + _x_174*rrrrrr_base_frame_yx
-    )
-    _x_176 = (
-    _y_182*rrrrrr_base_frame_xy + _y_183*rrrrrr_base_frame_xz + _y_184*rrrrrr_base_frame_xx
-    )
-    _y_186 = (
-    _y_182*rrrrrr_base_frame_yy + _y_183*rrrrrr_base_frame_yz + _y_184*rrrrrr_base_frame_yx
-    )
-    _x_177 = (
-    _x_171*rrrrrr_base_frame_xy + _y_177*rrrrrr_base_frame_xx + _y_181*rrrrrr_base_frame_xz
-    )
-    _y_187 = (
-    _x_171*rrrrrr_base_frame_yy + _y_177*rrrrrr_base_frame_yx + _y_181*rrrrrr_base_frame_yz
-    )
-    _z_11 = (
-    rrrrrr_base_frame_zx*(_x_171*rrrrrr_base_frame_zy + _y_177*rrrrrr_base_frame_zx +
-        _y_181*rrrrrr_base_frame_zz) + rrrrrr_base_frame_zy*(_x_172*rrrrrr_base_frame_zy +
-        _x_173*rrrrrr_base_frame_zz + _x_174*rrrrrr_base_frame_zx) +
-        rrrrrr_base_frame_zz*(_y_182*rrrrrr_base_frame_zy + _y_183*rrrrrr_base_frame_zz +
-        _y_184*rrrrrr_base_frame_zx)
+    d0_G_m2_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
     )
     # (M3) rotational block of M
     M_aa_t = (
-    M_ta_t_5*q_in_base_z + _x_109*q_in_base_y + _x_175*rrrrrr_base_frame_xy +
-        _x_176*rrrrrr_base_frame_xz + _x_177*rrrrrr_base_frame_xx + _z_10*q_in_base_y -
-        M_ta_t_9*q_in_base_y - _x_108*q_in_base_z - _y_154*q_in_base_z
+    M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
+        M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
+        n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y
+        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
+        n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y
+        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
     )
     M_aa_t_2 = (
-    M_ta_t_7*q_in_base_z + _y_119*q_in_base_z + _z_10*q_in_base_x - M_ta_t_10*q_in_base_y -
-        _x_143*q_in_base_z - _x_175*rrrrrr_base_frame_yy - _x_176*rrrrrr_base_frame_yz -
-        _x_177*rrrrrr_base_frame_yx - _y_120*q_in_base_y
+    M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x +
+        d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
+        d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
     )
     M_aa_t_3 = (
-    M_ta_t_11*q_in_base_y + _x_143*q_in_base_y + _z_5*q_in_base_z - M_ta_t_8*q_in_base_z -
-        _x_175*rrrrrr_base_frame_zy - _x_176*rrrrrr_base_frame_zz - _x_177*rrrrrr_base_frame_zx -
-        _y_154*q_in_base_x - _z_6*q_in_base_y
+    M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x + d0_G_m2_in_base_z*n_m2_in_base_x +
+        d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x - M_ta_t_8*q_in_base_z -
+        d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
     )
     M_aa_t_4 = (
-    M_ta_t_3*q_in_base_z + _x_144*q_in_base_z + _y_118*q_in_base_z + _y_185*rrrrrr_base_frame_yy +
-        _y_186*rrrrrr_base_frame_yz + _y_187*rrrrrr_base_frame_yx - M_ta_t_10*q_in_base_x -
-        _y_120*q_in_base_x - q_in_base_x*(_y_151*rrrrrr_base_frame_zy +
-        _y_152*rrrrrr_base_frame_zz + _y_153*rrrrrr_base_frame_zx)
+    M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
+        q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
+        M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
+        d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
     )
     M_aa_t_5 = (
-    M_ta_t_4*q_in_base_z + _x_144*q_in_base_y + _z_6*q_in_base_x - M_ta_t_11*q_in_base_x -
-        _y_185*rrrrrr_base_frame_zy - _y_186*rrrrrr_base_frame_zz - _y_187*rrrrrr_base_frame_zx -
-        _z_4*q_in_base_z - q_in_base_x*(_y_151*rrrrrr_base_frame_yy + _y_152*rrrrrr_base_frame_yz
-        + _y_153*rrrrrr_base_frame_yx)
+    M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y +
+        d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
+        d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x - d0_c_in_base_z_4*q_in_base_z -
+        d_G_m_yx*q_in_base_y
     )
     M_aa_t_6 = (
-    _z_11 + M_ta_t_4*q_in_base_y + _z_5*q_in_base_x + q_in_base_x*(_z_7*rrrrrr_base_frame_yy +
-        _z_8*rrrrrr_base_frame_yz + _z_9*rrrrrr_base_frame_yx) - M_ta_t_8*q_in_base_x -
-        _z_4*q_in_base_y - q_in_base_y*(_z_7*rrrrrr_base_frame_xy + _z_8*rrrrrr_base_frame_xz +
-        _z_9*rrrrrr_base_frame_xx)
+    M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
+        q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
+        M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z - d0_G_m2_in_base_z*n_m2_in_base_z
+        - d0_c_in_base_z_4*q_in_base_y - q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z +
+        d_G_m2_in_base_y*n_m2_in_base_z)
     )
     # (rrrrrr-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
@@ -2557,14 +2100,10 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_1_t + axis_y_rrrrrr_axes5_in_base_x*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_1_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_1_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_1_y + axis_z_rrrrrr_axes5_in_base_y*o_1_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_1_t + axis_y_rrrrrr_axes5_in_base_z*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_1_t_2)
-    )
+    # (rrrrrr-V33) rate at which the joints turn along moment direction 1
+    eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
+    # (rrrrrr-V34) rate at which the joints turn along moment direction 2
+    eta_2 = n_m2_in_base_x*omega_x + n_m2_in_base_y*omega_y + n_m2_in_base_z*omega_z
     # (rrrrrr-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
@@ -2577,151 +2116,69 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_dot_z*axis_z_rrrrrr_axes5_in_base_z
     )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t_2 = end_p1_r8_y*n_m1_r0_y
-    qd_1_t_3 = end_p1_r8_y*w_1_t_6
-    qd_1_t_4 = qd_1_t_3*v_4_z
-    qd_1_t_5 = qd_1_t_4 + qd_1_t_2*v_3_z
-    qd_1_t_6 = qd_1_t_4 + qd_1_t_2*v_2_z
-    qd_1_t_7 = v_3_z*w_1_t_25 - w_1_t_26
-    qd_1_t_8 = qd_1_t_6*v_3_y + qd_1_t_7*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_2_y
-    qd_1_t_9 = end_p1_r8_y*w_1_t_5
-    qd_1_t_10 = qd_1_t_2*v_1_z + qd_1_t_9*v_4_z
-    qd_1_t_11 = n_m2_t*w_1_t_5 - n_m1_r0_y*w_1_t_7
-    qd_1_t_12 = v_4_z*(w_1_t_5*w_1_t_8 - w_1_t_6*w_1_t_7)
-    qd_1_t_13 = qd_1_t_12 + qd_1_t_11*v_3_z - w_1_t_32
-    qd_1_t_14 = qd_1_t_10*v_3_y + qd_1_t_13*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_1_y
-    qd_1_t_15 = qd_1_t_12 + qd_1_t_11*v_2_z - w_1_t_32
-    qd_1_t_16 = qd_1_t_10*v_2_y + qd_1_t_15*rrrrrr_platform_joint_offset_x - qd_1_t_6*v_1_y
-    qd_1_t_17 = qd_1_t_16*v_3_x + qd_1_t_8*v_1_x - qd_1_t_14*v_2_x
-    qd_1_t_18 = qd_1_t_5*v_2_x - qd_1_t_6*v_3_x
-    qd_1_t_19 = rrrrrr_platform_joint_offset_x*w_1_t_25
-    qd_1_t_20 = qd_1_t_2*v_3_y - qd_1_t_19
-    qd_1_t_21 = qd_1_t_19 - qd_1_t_2*v_2_y
-    qd_1_t_22 = qd_1_t_20*v_2_x + qd_1_t_21*v_3_x
-    inv_qd_1_t_44 = 1.0/qd_1_t_17
-    qd_1_t_23 = qd_1_t_5*v_1_x - qd_1_t_10*v_3_x
-    qd_1_t_24 = qd_1_t_2*v_1_y - qd_1_t_11*rrrrrr_platform_joint_offset_x
-    qd_1_t_25 = qd_1_t_20*v_1_x - qd_1_t_24*v_3_x
-    qd_1_t_26 = qd_1_t_6*v_1_x - qd_1_t_10*v_2_x
-    qd_1_t_27 = qd_1_t_21*v_1_x + qd_1_t_24*v_2_x
-    qd_1_t_28 = rrrrrr_platform_joint_offset_x*w_1_t_8
-    qd_1_t_29 = qd_1_t_28 + end_p1_r8_y*v_3_y
-    qd_1_t_30 = qd_1_t_28 + end_p1_r8_y*v_2_y
-    qd_1_t_31 = qd_1_t_29*w_1_t_6 - qd_1_t_30*w_1_t_6
-    qd_1_t_32 = w_1_t_6*(end_p1_r8_y*v_1_y + rrrrrr_platform_joint_offset_x*w_1_t_7)
-    qd_1_t_33 = qd_1_t_29*w_1_t_5 - qd_1_t_32
-    qd_1_t_34 = qd_1_t_32 - qd_1_t_30*w_1_t_5
-    qd_1_t_35 = qd_1_t_33*v_2_z + qd_1_t_34*v_3_z - qd_1_t_31*v_1_z
-    qd_1_t_36 = qd_1_t_3*v_1_z
-    qd_1_t_37 = (
-    v_1_x*(qd_1_t_3*v_2_z - qd_1_t_3*v_3_z) + v_3_x*(qd_1_t_36 - qd_1_t_9*v_2_z) -
-        v_2_x*(qd_1_t_36 - qd_1_t_9*v_3_z)
+    # (rrrrrr-V35) rate of joint 1
+    qd_1_t = eta_1*size
+    qd_1_t_2 = eta_2*size
+    qd_1_t_3 = (
+    inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
+        qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
     )
-    qd_1_t_38 = qd_1_t_33*v_2_x + qd_1_t_34*v_3_x - qd_1_t_31*v_1_x
-    qd_1_t_39 = qd_1_t_15*v_3_y + qd_1_t_7*v_1_y - qd_1_t_13*v_2_y
-    qd_1_t_40 = qd_1_t_15*v_3_x + qd_1_t_7*v_1_x - qd_1_t_13*v_2_x
-    qd_1_t_41 = v_1_y*w_1_t_25
-    qd_1_t_42 = (
-    v_1_x*(v_2_y*w_1_t_25 - v_3_y*w_1_t_25) + v_3_x*(qd_1_t_41 - qd_1_t_11*v_2_y) -
-        v_2_x*(qd_1_t_41 - qd_1_t_11*v_3_y)
+    qd_1_t_4 = (
+    inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
+        qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
     )
-    qd_1 = (
-    qd_1_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_8 + S_dot_tip_y*qd_1_t_18 - S_dot_tip_z*qd_1_t_22)
+    qd_1_t_5 = (
+    inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
+        S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
     )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y - axis_x_rrrrrr_axes5_x*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*o_2_t_2
+    qd_1_t_6 = (
+    inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
+        + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
     )
-    o_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y - axis_x_rrrrrr_axes5_y*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*o_2_t_2
+    qd_1_t_7 = (
+    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 + qd_1_t_5*w_1_t_21
+        - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
     )
-    o_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y - axis_x_rrrrrr_axes5_z*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*o_2_t_2
-    )
-    # (rrrrrr-V34) rate of joint 2
-    qd_2_t = o_2_in_base_x*omega_x + o_2_in_base_y*omega_y + o_2_in_base_z*omega_z
-    qd_2 = (
-    qd_2_t - inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_14 + S_dot_tip_y*qd_1_t_23 - S_dot_tip_z*qd_1_t_25)
-    )
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2_t*qd_1
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_t = qd_1_t_5*s_2
+    omega_1_t_2 = c_2_t*qd_1_t_5
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrrrr-V35) rate of joint 3
-    qd_3_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_3_t + axis_y_rrrrrr_axes5_in_base_x*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_3_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_3_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_3_y + axis_z_rrrrrr_axes5_in_base_y*o_3_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_3_t + axis_y_rrrrrr_axes5_in_base_z*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_3_t_2)
-    )
-    qd_3 = (
-    qd_3_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_16 + S_dot_tip_y*qd_1_t_26 + S_dot_tip_z*qd_1_t_27)
-    )
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+    zeta_2_x = omega_1_t_2*qd_1_t_4
+    zeta_2_y = omega_1_t*qd_1_t_4
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+    omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
     # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_3
-    zeta_3_y = omega_2_r0_x*qd_3
+    zeta_3_x = omega_2_r0_y*qd_1_t_3
+    zeta_3_y = omega_2_r0_x*qd_1_t_3
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = -c_3*zeta_2_x - s_3*zeta_2_y
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
     # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
     beta_3_x = zeta_2_r0_x + zeta_3_x
     beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_z = qd_2 + qd_3
-    # (rrrrrr-V36) rate of joint 4
-    qd_4_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_4_t + axis_y_rrrrrr_axes5_in_base_x*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_4_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_4_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_4_y + axis_z_rrrrrr_axes5_in_base_y*o_4_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_4_t + axis_y_rrrrrr_axes5_in_base_z*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_4_t_2)
-    )
-    qd_4 = (
-    qd_4_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_35 + S_dot_tip_y*qd_1_t_37 - S_dot_tip_z*qd_1_t_38)
-    )
-    # (rrrrrr-V42) angular velocity of link 3
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_z = qd_1_t_3 + qd_1_t_4
     omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
     omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
     # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_4
-    zeta_4_y = omega_3_r1_x*qd_4
+    zeta_4_x = omega_3_r1_y*qd_1_t_6
+    zeta_4_y = omega_3_r1_x*qd_1_t_6
     # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
     beta_3_t = beta_3_y*c_4_t
     beta_3_t_2 = beta_3_y*s_4
     # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
     beta_4_x = zeta_4_x - beta_3_t
     beta_4_y = -beta_3_t_2 - zeta_4_y
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_4
-    # (rrrrrr-V37) rate of joint 5
-    qd_5_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_5_t + axis_y_rrrrrr_axes5_in_base_x*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_5_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_5_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_5_y + axis_z_rrrrrr_axes5_in_base_y*o_5_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_5_t + axis_y_rrrrrr_axes5_in_base_z*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_5_t_2)
-    )
-    qd_5 = (
-    qd_5_t + inv_qd_1_t_44*(S_dot_tip_y*qd_1_t_40 + S_dot_tip_z*qd_1_t_42 - S_dot_tip_x*qd_1_t_39)
-    )
-    # (rrrrrr-V44) angular velocity of link 4
+    # (rrrrrr-V46) angular velocity of link 4
+    omega_4_z = omega_2_r0_x + qd_1_t_6
     omega_4_t = c_5_t*omega_3_r1_y
     omega_4_r1_x = omega_4_z*s_5 - omega_4_t
     omega_4_t_2 = omega_3_r1_y*s_5
     omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
     # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_5
-    zeta_5_y = omega_4_r1_x*qd_5
+    zeta_5_x = omega_4_r1_y*qd_1_t_7
+    zeta_5_y = omega_4_r1_x*qd_1_t_7
     # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
     beta_4_t = beta_3_x*s_5
     beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
@@ -2730,8 +2187,8 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
     beta_5_x = beta_4_r1_x + zeta_5_x
     beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V46) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_5
+    # (rrrrrr-V48) angular velocity of link 5
+    omega_5_z = omega_3_r1_x + qd_1_t_7
     # (rrrrrr-A14) rate of moment direction 1
     nd_m1_t = end_p1_r8_y*omega_4_r1_y
     omega_tip_x = (
@@ -2762,12 +2219,12 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
     nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
     nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V41) centripetal tensor of link 2
+    # (rrrrrr-V43) centripetal tensor of link 2
     W_2_t = omega_1_t*omega_1_t
     W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
+    W_2_t_3 = qd_1_t_4*qd_1_t_4
     W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V43) centripetal tensor of link 3
+    # (rrrrrr-V45) centripetal tensor of link 3
     W_3_t = omega_2_r0_x*omega_2_r0_x
     W_3_t_2 = omega_2_r0_y*omega_2_r0_y
     W_3_t_3 = omega_3_z*omega_3_z
@@ -2775,24 +2232,21 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     W_3_xy = omega_2_r0_x*omega_2_r0_y
     W_3_xz = omega_2_r0_x*omega_3_z
     W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V45) centripetal tensor of link 4
+    # (rrrrrr-V47) centripetal tensor of link 4
     W_4_t = omega_3_r1_x*omega_3_r1_x
     W_4_t_2 = omega_3_r1_y*omega_3_r1_y
     W_4_t_3 = omega_4_z*omega_4_z
     W_4_xy = omega_3_r1_x*omega_3_r1_y
     W_4_xz = omega_3_r1_x*omega_4_z
     W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V47) centripetal tensor of link 5
+    # (rrrrrr-V49) centripetal tensor of link 5
     W_5_t = omega_4_r1_x*omega_4_r1_x
     W_5_t_2 = omega_4_r1_y*omega_4_r1_y
     W_5_t_3 = omega_5_z*omega_5_z
+    W_5_xx = W_5_t_2 + W_5_t_3
     W_5_xy = omega_4_r1_x*omega_4_r1_y
     W_5_xz = omega_4_r1_x*omega_5_z
     W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1
-    omega_1_y = e_1_r6_y*qd_1
-    omega_1_z = qd_1*v_1_t
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
     bias_t = rrrrrr_joint2_offset_x*s_2
     bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
@@ -2802,64 +2256,71 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     bias_t_4 = d_2_r2_y*s_4
     d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
     d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = bias_t_3*omega_1_y - d_2_r6_y*omega_1_z
-    bias_t_6 = d_2_r6_x*omega_1_z - bias_t_3*omega_1_x
-    bias_t_7 = d_2_r6_y*omega_1_x - d_2_r6_x*omega_1_y
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_x = e_1_r6_x*qd_1_t_5
+    omega_1_y = e_1_r6_y*qd_1_t_5
+    omega_1_z = qd_1_t_5*v_1_t
+    # (rrrrrr-V41) centripetal tensor of link 1
+    W_1_t = omega_1_x*omega_1_x
+    W_1_t_2 = omega_1_y*omega_1_y
+    W_1_t_3 = omega_1_z*omega_1_z
+    W_1_xy = omega_1_x*omega_1_y
+    W_1_xz = omega_1_x*omega_1_z
+    W_1_yz = omega_1_y*omega_1_z
+    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+    bias_t_5 = c_3*rrrrrr_joint3_offset_x
+    bias_t_6 = rrrrrr_joint3_offset_x*s_3
+    bias_t_7 = bias_t_6*c_4_t
+    bias_t_8 = bias_t_6*s_4
+    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
     zeta_2_t = c_4_t*zeta_2_r0_y
     zeta_2_t_2 = s_4*zeta_2_r0_y
     zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
     zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_x = qd_1_t_4*v_2_t - omega_1_x
+    omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
+    omega_2_z = omega_1_z + qd_1_t_4*s_4
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t_4 = omega_2_x*omega_2_x
+    W_2_t_5 = omega_2_y*omega_2_y
+    W_2_t_6 = omega_2_z*omega_2_z
+    W_2_xy_2 = omega_2_x*omega_2_y
+    W_2_xz = omega_2_x*omega_2_z
+    W_2_yz = omega_2_y*omega_2_z
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_8 = c_3*rrrrrr_joint3_offset_x
-    bias_t_9 = rrrrrr_joint3_offset_x*s_3
-    bias_t_10 = bias_t_9*c_4_t
-    bias_t_11 = bias_t_9*s_4
-    d_3_r4_x = bias_t_8*s_5 - bias_t_11*c_5_t
-    d_3_r4_y = -bias_t_11*s_5 - bias_t_8*c_5_t
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_x = omega_1_x + qd_2*v_2_t
-    omega_2_y = omega_1_y + qd_2*v_2_t_2
-    omega_2_z = qd_2*s_4 - omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_12 = bias_t_10*omega_2_y - d_3_r4_y*omega_2_z
-    bias_t_13 = d_3_r4_x*omega_2_z - bias_t_10*omega_2_x
-    bias_t_14 = d_3_r4_y*omega_2_x - d_3_r4_x*omega_2_y
-    bias_t_15 = rrrrrr_joint4_offset_x*s_5
-    bias_t_16 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V42) angular velocity of link 3
+    bias_t_9 = rrrrrr_joint4_offset_x*s_5
+    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+    # (rrrrrr-V44) angular velocity of link 3
     omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
     omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_17 = bias_t_16*omega_3_r1_x
-    bias_t_18 = bias_t_15*omega_3_r1_x
-    bias_t_19 = bias_t_15*omega_3_r3_y + bias_t_16*omega_3_r3_x
-    bias_t_20 = rrrrrr_joint5_offset_x*s_5
-    bias_t_21 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_22 = bias_t_21*omega_3_r1_x
-    bias_t_23 = bias_t_20*omega_3_r1_x
-    bias_t_24 = bias_t_20*omega_4_r1_y + bias_t_21*omega_4_r1_x
-    bias_t_25 = omega_5_z*rrrrrr_platform_joint_offset_x
-    bias_t_26 = omega_4_r1_y*rrrrrr_platform_joint_offset_x
+    bias_t_11 = rrrrrr_joint5_offset_x*s_5
+    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+    bias_t_13 = W_5_xy + beta_4_x
     bias_x = (
-    beta_4_x*bias_t_21 + bias_t_10*zeta_2_r4_y + bias_t_14*omega_2_y + bias_t_7*omega_1_y +
-        d_3_r4_y*zeta_2_t - beta_3_t*bias_t_16 - bias_t_13*omega_2_z - bias_t_18*omega_3_r1_x -
-        bias_t_19*omega_3_r3_y - bias_t_23*omega_3_r1_x - bias_t_24*omega_4_r1_y -
-        bias_t_25*omega_5_z - bias_t_26*omega_4_r1_y - bias_t_6*omega_1_z
+    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
     )
     bias_y = (
-    beta_4_x*bias_t_20 + beta_4_x*rrrrrr_platform_joint_offset_x + bias_t_12*omega_2_z +
-        bias_t_17*omega_3_r1_x + bias_t_19*omega_3_r3_x + bias_t_22*omega_3_r1_x +
-        bias_t_24*omega_4_r1_x + bias_t_26*omega_4_r1_x + bias_t_5*omega_1_z - beta_3_t*bias_t_15
-        - bias_t_10*zeta_2_r4_x - bias_t_14*omega_2_x - bias_t_7*omega_1_x - d_3_r4_x*zeta_2_t
+    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
+        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
+        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
     )
     bias_z = (
-    bias_t_13*omega_2_x + bias_t_18*omega_3_r3_x + bias_t_23*omega_4_r1_x + bias_t_25*omega_4_r1_x
-        + bias_t_5*omega_1_y + d_3_r4_y*zeta_2_r4_x - beta_4_r1_x*bias_t_21 -
-        beta_4_r1_y*bias_t_20 - beta_5_y*rrrrrr_platform_joint_offset_x - bias_t_12*omega_2_y -
-        bias_t_15*(beta_3_t_2*s_5 - beta_4_t_2) - bias_t_16*(beta_4_t + beta_3_t_2*c_5_t) -
-        bias_t_17*omega_3_r3_y - bias_t_22*omega_4_r1_y - bias_t_6*omega_1_x -
-        d_3_r4_x*zeta_2_r4_y
+    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
+        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
+        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
+        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
+        bias_t_7*(W_2_t_4 + W_2_t_5)
     )
     # (rrrrrr-A1) centripetal acceleration of the connection point
     u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
@@ -2880,55 +2341,59 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     rel_o_x = u_1_tip_x - bias_x
     rel_o_y = u_1_tip_y - bias_y
     rel_o_z = u_1_tip_z - bias_z
-    # (rrrrrr-A19) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_o = (
-    inv_qd_1_t_44*(qd_1_t_18*rel_o_y + qd_1_t_8*rel_o_x - qd_1_t_22*rel_o_z) + nu_2*w_1_t_66 -
-        nu_1*w_1_t_65
+    # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
+    qdd_1_o_t = nu_1*size
+    qdd_1_o_t_2 = nu_2*size
+    qdd_1_o_t_3 = (
+    inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 + rel_o_z*w_1_t_85
+        - rel_o_y*w_1_t_84)
     )
-    # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 2
-    qdd_2_o = (
-    nu_1*w_2_t_4 - inv_qd_1_t_44*(qd_1_t_14*rel_o_x + qd_1_t_23*rel_o_y - qd_1_t_25*rel_o_z) -
-        nu_2*w_2_t_5
+    qdd_1_o_t_4 = (
+    inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 + rel_o_z*w_1_t_73
+        - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
+    )
+    qdd_1_o_t_5 = (
+    inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
+        qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
+    )
+    qdd_1_o_t_6 = (
+    inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
+        qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
     )
     # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2_t*qdd_1_o
-    # (rrrrrr-A37) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = alpha_1_o_t - zeta_2_x
-    alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrrrr-A39) acceleration tensor of link 2
-    B_2_o_xy = -W_2_xy - qdd_2_o
-    B_2_o_yx = qdd_2_o - W_2_xy
-    B_2_o_zx = zeta_2_y - alpha_2_o_y
-    B_2_o_zy = alpha_2_o_x - zeta_2_x
-    # (rrrrrr-A65) remainder without the acceleration in: acceleration of the origin of joint 3
+    alpha_1_o_t = qdd_1_o_t_5*s_2
+    alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
+    # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
+    alpha_2_o_x = zeta_2_x - alpha_1_o_t
+    alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
+    # (rrrrrr-A37) acceleration tensor of link 2
+    B_2_o_xy = -W_2_xy - qdd_1_o_t_4
+    B_2_o_yx = qdd_1_o_t_4 - W_2_xy
+    B_2_o_zx = -alpha_2_o_y - zeta_2_y
+    B_2_o_zy = alpha_2_o_x + zeta_2_x
+    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
     a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
     a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A23) remainder without the acceleration in: acceleration of joint 3
-    qdd_3_o = (
-    inv_qd_1_t_44*(qd_1_t_16*rel_o_x + qd_1_t_26*rel_o_y + qd_1_t_27*rel_o_z) + nu_2*w_3_t_5 -
-        nu_1*w_3_t_4
-    )
-    # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
-    alpha_3_o_z = qdd_2_o + qdd_3_o
-    # (rrrrrr-A45) acceleration tensor of link 3
+    alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
+    # (rrrrrr-A41) acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
     B_3_o_yz = W_3_yz - alpha_3_o_x
     B_3_o_zx = W_3_xz - alpha_3_o_y
     B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrrrr-A65) remainder without the acceleration in: acceleration of the origin of joint 3
+    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
     a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
-    # (rrrrrr-A69) remainder without the acceleration in: acceleration of the origin of joint 4
+    # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
     a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
     a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
     a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
     g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
@@ -2940,23 +2405,18 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
     acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
     acc_4_o_z = a_o4_o_x - g_r4_x
-    # (rrrrrr-A25) remainder without the acceleration in: acceleration of joint 4
-    qdd_4_o = (
-    inv_qd_1_t_44*(qd_1_t_35*rel_o_x + qd_1_t_37*rel_o_y - qd_1_t_38*rel_o_z) + nu_2*w_4_t_5 -
-        nu_1*w_4_t_4
-    )
-    # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 4
+    # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
     alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
     alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
-    alpha_4_o_z = alpha_3_o_x + qdd_4_o
-    # (rrrrrr-A51) acceleration tensor of link 4
+    alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
+    # (rrrrrr-A45) acceleration tensor of link 4
     B_4_o_xy = W_4_xy - alpha_4_o_z
     B_4_o_xz = W_4_xz + alpha_4_o_y
     B_4_o_yx = W_4_xy + alpha_4_o_z
     B_4_o_yz = W_4_yz - alpha_4_o_x
     B_4_o_zx = W_4_xz - alpha_4_o_y
     B_4_o_zy = W_4_yz + alpha_4_o_x
-    # (rrrrrr-N54) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
     mu_4_o_x = (
     B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
         J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
@@ -2969,27 +2429,25 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
         B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
     )
-    # (rrrrrr-N34) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+    # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
     acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
     acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
     acc_5_o_z = u_1_tip_z - g_r6_x
-    # (rrrrrr-A27) remainder without the acceleration in: acceleration of joint 5
-    qdd_5_o = (
-    inv_qd_1_t_44*(qd_1_t_40*rel_o_y + qd_1_t_42*rel_o_z - qd_1_t_39*rel_o_x) + nu_2*w_5_t_5 -
-        nu_1*w_5_t_4
-    )
-    # (rrrrrr-A55) remainder without the acceleration in: angular acceleration of link 5
+    # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
     alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
     alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
-    alpha_5_o_z = alpha_4_o_x + qdd_5_o
-    # (rrrrrr-A57) acceleration tensor of link 5
+    alpha_5_o_z = (
+    alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21
+        + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
+    )
+    # (rrrrrr-A51) acceleration tensor of link 5
     B_5_o_xy = W_5_xy - alpha_5_o_z
     B_5_o_xz = W_5_xz + alpha_5_o_y
     B_5_o_yx = W_5_xy + alpha_5_o_z
     B_5_o_yz = W_5_yz - alpha_5_o_x
     B_5_o_zx = W_5_xz - alpha_5_o_y
     B_5_o_zy = W_5_yz + alpha_5_o_x
-    # (rrrrrr-N44) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+    # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
     mu_5_o_x = (
     B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
         B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
@@ -3002,11 +2460,11 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
         B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
     )
-    # (rrrrrr-N58) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+    # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
     N_4_o_x = mu_4_o_x + mu_5_o_z
     N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
     N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
-    # (rrrrrr-N32) remainder without the acceleration in: inertia force of link 4 less its weight
+    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
     f_4_o_x = (
     B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
     )
@@ -3016,11 +2474,11 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     f_4_o_z = (
     B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
     )
-    # (rrrrrr-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = a_o3_o_r0_x - g_r4_x
     acc_3_o_y = a_o3_o_r0_y - g_r4_y
     acc_3_o_z = a_o3_o_t_3 - g_r1_x
-    # (rrrrrr-N68) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
         B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
@@ -3033,14 +2491,14 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
         B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
     )
-    # (rrrrrr-N32) remainder without the acceleration in: inertia force of link 4 less its weight
+    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
     f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
     f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
-    # (rrrrrr-N72) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_o_x = N_4_o_z + mu_3_o_x
     N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
     N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
-    # (rrrrrr-N22) remainder without the acceleration in: inertia force of link 3 less its weight
+    # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
     f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
     f_3_o_y = (
     B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
@@ -3048,45 +2506,59 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     f_3_o_z = (
     B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
     )
-    # (rrrrrr-N76) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+    # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
     T_3_o_x = f_3_o_x + f_4_o_z
     T_3_o_y = f_3_o_y + f_4_o_r0_x
     T_3_o_z = f_3_o_z + f_4_o_r0_y
-    # (rrrrrr-N86) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_x = (
-    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t +
-        g_r3_y*h_2_z - B_2_o_zx*J_2_xy - g_r1_x*h_2_y
+    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+        B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
     )
     mu_2_o_y = (
-    B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-        W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
+    B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
+        B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
     )
     mu_2_o_z = (
-    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_xz*alpha_1_o_t + g_r3_x*h_2_y -
-        B_2_o_xy*Sigma_2_yy - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
+    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
+        B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
     )
-    # (rrrrrr-N90) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
     N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
     N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
-    # (rrrrrr-N104) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N108) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+    # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
-    # (rrrrrr-N124) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    G_o_t = inv_w_1_t_69*mu_5_o_z
+    G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
+    G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
+    G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
+    G_o_t_5 = (
+    inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
+        G_o_t_2*w_1_t_47)
+    )
+    G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
+    G_o_t_7 = (
+    size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
+        G_o_t_5*w_1_t_87)
+    )
+    # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
-    h_5_x*(W_5_t_2 + W_5_t_3) + inv_w_1_t_113*(N_2_o_z*w_1_t_34 + N_4_o_z*w_1_t_37 +
-        mu_5_o_z*w_1_t_39 - N_1_o_z*w_1_t_31 - N_3_o_z*w_1_t_35) - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z
+    G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
+        G_o_t_5*w_1_t_83
     )
     c_o_y = (
-    h_5_y*(W_5_t + W_5_t_3) + inv_w_1_t_113*(N_1_o_z*w_1_t_42 + N_3_o_z*w_1_t_51 +
-        N_4_o_z*w_1_t_52 - N_2_o_z*w_1_t_47 - mu_5_o_z*w_1_t_17) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z
+    G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z - G_o_t*w_1_t_16
+        - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
     )
     c_o_z = (
-    h_5_z*(W_5_t + W_5_t_2) - B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - inv_w_1_t_113*(N_1_o_z*w_1_t_55 +
-        N_3_o_z*w_1_t_60 + N_4_o_z*w_1_t_61 + mu_5_o_z*w_1_t_63 - N_2_o_z*w_1_t_58)
+    G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
+        B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
     )
-    # (rrrrrr-N130) velocity and gravity terms of the leg force
+    # (rrrrrr-N139) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
         axis_z_rrrrrr_axes5_in_base_x*c_o_z
@@ -3099,43 +2571,48 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
         axis_z_rrrrrr_axes5_in_base_z*c_o_z
     )
-    # (rrrrrr-N120) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_o_x = N_1_o_z*o_1_t + N_3_o_z*o_3_t + N_4_o_z*o_4_t + mu_5_o_z*o_5_t - N_2_o_z*o_2_t
-    G_m_o_y = N_1_o_z*o_1_y + N_2_o_z*o_2_y + N_3_o_z*o_3_y + N_4_o_z*o_4_y + mu_5_o_z*o_5_y
-    G_m_o_z = (
-    N_1_o_z*o_1_t_2 + N_3_o_z*o_3_t_2 + N_4_o_z*o_4_t_2 + mu_5_o_z*o_5_t_2 - N_2_o_z*o_2_t_2
-    )
+    # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_o_t = G_o_t_6*end_p1_r8_y
+    G_m_o_t_2 = G_o_t_7*end_p1_r8_y
+    G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
     # (M7) rotational part of Z
     Z_a_t = (
-    G_m_o_x*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
-        G_m_o_z*axis_z_rrrrrr_axes5_in_base_x + U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
+    G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
+        U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
+        U_in_base_y*q_in_base_z
     )
     Z_a_t_2 = (
-    G_m_o_x*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
-        G_m_o_z*axis_z_rrrrrr_axes5_in_base_y + U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
+    G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
+        U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
+        U_in_base_z*q_in_base_x
     )
     Z_a_t_3 = (
-    G_m_o_x*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
-        G_m_o_z*axis_z_rrrrrr_axes5_in_base_z + U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+    G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
+        U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
+        U_in_base_x*q_in_base_y
     )
     # (rrrrrr-V16) force part of reciprocal wrench 2
     w_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*w_2_t_2 - axis_x_rrrrrr_axes5_x*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_3
+    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
     )
     w_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*w_2_t_2 - axis_x_rrrrrr_axes5_y*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_3
+    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
     )
     w_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*w_2_t_2 - axis_x_rrrrrr_axes5_z*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_3
+    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
     )
+    # (rrrrrr-V29) moment part of reciprocal wrench 2
+    o_2_x = n_m1_in_base_x*w_2_t_5 + n_m2_in_base_x*w_2_t_6
+    o_2_y_2 = n_m1_in_base_y*w_2_t_5 + n_m2_in_base_y*w_2_t_6
+    o_2_z = n_m1_in_base_z*w_2_t_5 + n_m2_in_base_z*w_2_t_6
     # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = o_2_in_base_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-    H_a_2_y = o_2_in_base_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-    H_a_2_z = o_2_in_base_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
-    ok = (abs(w_1_t_24) > _TOLERANCE * w_1_t) & (abs(-qd_1_t_17) > _TOLERANCE * w_1_t)
+    H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
+    H_a_2_y = o_2_y_2 + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
+    H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
@@ -3197,7 +2674,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 13845 mul, 8925 add, 6 div, 0 sqrt, 60 trig
+# M: 7293 mul, 5319 add, 30 div, 30 sqrt, 60 trig
 def _M_before(c, X, q, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -3260,19 +2737,21 @@ def _M_before(c, X, q, f):
 
 
 def _M_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     (
     J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-        J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_4_zz, J_5_xx, J_5_xy, J_5_xz,
-        J_5_yy, J_5_yz, J_5_zz, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z,
-        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-        rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-        rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
-        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
-        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, w_1_t,
+        J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz, J_5_yy,
+        J_5_yz, J_5_zz, Jc_1_t, Jc_2_t_2, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_2_x, h_2_y, h_3_y, h_3_z,
+        h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_2_t, hc_3_x, rrrrrr_base_frame_xx,
+        rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
+        rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
+        rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
+        rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
+        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
+        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -3356,10 +2835,10 @@ def _M_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -3379,9 +2858,9 @@ def _M_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -3410,6 +2889,82 @@ def _M_rrrrrr(c, k, x, s, f):
     axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
         axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
     )
+    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
+    J_5_t = J_5_xy*s_5
+    _x = -J_5_t - J_5_xx*c_5_t
+    J_5_t_2 = J_5_xy*c_5_t
+    _x_2 = -J_5_t_2 - J_5_yy*s_5
+    _x_3 = -J_5_xz*c_5_t - J_5_yz*s_5
+    _y = J_5_xz*s_5 - J_5_yz*c_5_t
+    # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
+    Jc_4_xy = _x_3 - J_4_yz
+    Jc_4_xz = J_4_xz + _y
+    Jc_4_yy = J_4_yy - _x*c_5_t - _x_2*s_5
+    Jc_4_yz = _x*s_5 - J_4_xy - _x_2*c_5_t
+    Jc_4_zz = J_4_xx + s_5*(J_5_xx*s_5 - J_5_t_2) - c_5_t*(J_5_t - J_5_yy*c_5_t)
+    Jc_4_t = Jc_4_xy*s_4
+    _x_4 = -Jc_4_t - Jc_4_xx*c_4_t
+    Jc_4_t_2 = Jc_4_xy*c_4_t
+    _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
+    _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
+    _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
+    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
+    h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
+    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_t = h_4_r1_x*rrrrrr_joint4_offset_x
+    Jc_3_t_4 = h_4_r1_y*rrrrrr_joint4_offset_x
+    Jc_3_xx = J_3_xx + Jc_3_t_3 + Jc_4_zz - 2.0*Jc_3_t_2
+    Jc_3_xy = J_3_xy + _x_6 - Jc_3_t
+    Jc_3_xz = J_3_xz + _y_2 - Jc_3_t_4
+    Jc_3_yy = J_3_yy + Jc_3_t_3 - _x_4*c_4_t - _x_5*s_4
+    Jc_3_yz = J_3_yz + _x_4*s_4 - _x_5*c_4_t
+    Jc_3_zz = J_3_zz + Jc_3_t_3 + s_4*(Jc_4_xx*s_4 - Jc_4_t_2) - c_4_t*(Jc_4_t - Jc_4_yy*c_4_t)
+    # (rrrrrr-N43) first moment of the links from 3 outwards
+    hc_3_y = h_3_y + h_4_r1_x
+    hc_3_z = h_3_z + h_4_r1_y
+    # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_t_5 = Jc_3_xy*s_3
+    _x_7 = Jc_3_xx*c_3 - Jc_3_t_5
+    Jc_3_t_6 = Jc_3_xy*c_3
+    _x_8 = Jc_3_t_6 - Jc_3_yy*s_3
+    _x_9 = Jc_3_xz*c_3 - Jc_3_yz*s_3
+    _y_3 = Jc_3_xz*s_3 + Jc_3_yz*c_3
+    # (rrrrrr-N43) first moment of the links from 3 outwards
+    hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
+    hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
+    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_t = rrrrrr_joint3_offset_x*(Jc_2_t_2 + hc_3_r0_x)
+    Jc_2_t_3 = 2.0*Jc_2_t
+    Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
+    Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
+    # (rrrrrr-N52) first moment of the links from 2 outwards
+    hc_2_x = h_2_x + hc_2_t + hc_3_r0_x
+    hc_2_y = h_2_y + hc_3_r0_y
+    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
+    _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
+    _y_5 = (
+    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t - _x_8*s_3) - Jc_2_xy*c_2_t) -
+        c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
+        s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
+    )
+    # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t_2 = rrrrrr_joint2_offset_x*(Jc_1_t + hc_2_x*s_2 - c_2_t*hc_2_y)
+    Jc_1_zz = J_1_xx + _y_5
+    # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
+    L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
+    L_c3_2_r0_y = _x_9*s_2 - _y_3*c_2_t
+    # (rrrrrr-N37) moment about joint 3 that accelerates joint 4, per unit
+    L_c4_3_y = _x_6 - Jc_3_t
+    L_c4_3_z = _y_2 - Jc_3_t_4
+    # (rrrrrr-N39) moment about joint 2 that accelerates joint 4, per unit
+    L_c4_2_y = Jc_4_zz*s_3 + L_c4_3_y*c_3 - h_4_r1_x*rrrrrr_joint3_offset_x
+    L_c4_2_z = L_c4_3_z - c_3*h_4_r1_y*rrrrrr_joint3_offset_x
+    L_c4_2_r0_y = s_2*(Jc_4_zz*c_3 - L_c4_3_y*s_3) - L_c4_2_y*c_2_t
+    # (rrrrrr-N27) moment about joint 5 that accelerates joint 5, per unit
+    L_c5_r2_x = -J_5_zz*c_4_t - _x_3*s_4
+    L_c5_r2_y = J_5_zz*s_4 - _x_3*c_4_t
+    L_c5_r5_y = s_2*(_y*c_3 - L_c5_r2_x*s_3) - c_2_t*(L_c5_r2_x*c_3 + _y*s_3)
     # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
     end_p1_r0_x = (
     rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
@@ -3446,439 +3001,315 @@ def _M_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7
-    w_1_t_12 = v_2_z*w_1_t_8 - v_3_z*w_1_t_8
-    w_1_t_13 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_14 = v_1_x*w_1_t_12 + w_1_t_13*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_15 = v_2_z*w_1_t_6 - v_3_z*w_1_t_6
-    w_1_t_16 = v_1_x*w_1_t_15 + w_1_t_13*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_17 = n_m2_t*w_1_t_16 + v_4_z*w_1_t_11 - n_m1_r0_y*w_1_t_14
-    w_1_t_18 = v_2_y*w_1_t_6 - v_3_y*w_1_t_6
-    w_1_t_19 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_20 = v_1_x*w_1_t_18 + w_1_t_19*w_1_t_5 - v_1_y*w_1_t_10
-    w_1_t_21 = v_2_y*v_3_z - v_2_z*v_3_y
-    w_1_t_22 = v_1_x*w_1_t_21 + v_1_z*w_1_t_19 - v_1_y*w_1_t_13
-    w_1_t_23 = n_m1_r0_y*w_1_t_22 + v_4_z*w_1_t_20
-    w_1_t_24 = end_p1_r8_y*w_1_t_23 + rrrrrr_platform_joint_offset_x*w_1_t_17
-    w_1_t_25 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_26 = v_4_z*w_1_t_8
-    w_1_t_27 = w_1_t_26 + n_m2_t*v_3_z
-    w_1_t_28 = v_4_z*w_1_t_6
-    w_1_t_29 = w_1_t_28 + n_m1_r0_y*v_3_z
-    w_1_t_30 = v_1_z*w_1_t_25
-    w_1_t_31 = v_1_y*w_1_t_6
-    w_1_t_32 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_3_z - v_1_z*v_3_y) + v_4_z*(w_1_t_31 - v_3_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_30 + w_1_t_29*w_1_t_7 - w_1_t_27*w_1_t_5)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_33 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_2_z - v_1_z*v_2_y) + v_4_z*(w_1_t_31 - v_2_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_30 + w_1_t_7*(w_1_t_28 + n_m1_r0_y*v_2_z) -
-        w_1_t_5*(w_1_t_26 + n_m2_t*v_2_z))
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_34 = v_1_y*w_1_t_15 + w_1_t_21*w_1_t_5 - v_1_z*w_1_t_18
-    w_1_t_35 = v_2_y*w_1_t_8 - v_3_y*w_1_t_8
-    inv_w_1_t_113 = 1.0/w_1_t_24
-    w_1_t_36 = (
-    inv_w_1_t_113*(end_p1_r8_y*(n_m1_r0_y*w_1_t_21 + v_4_z*w_1_t_18) +
-        rrrrrr_platform_joint_offset_x*(v_2_z*w_1_t_25 + w_1_t_29*w_1_t_8 - w_1_t_27*w_1_t_6))
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_37 = n_m1_r0_y*w_1_t_13 + v_4_z*w_1_t_10
-    w_1_t_38 = v_1_x*w_1_t_6
-    w_1_t_39 = w_1_t_38 - v_3_x*w_1_t_5
-    w_1_t_40 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_41 = n_m1_r0_y*w_1_t_40 + v_4_z*w_1_t_39
-    w_1_t_42 = w_1_t_38 - v_2_x*w_1_t_5
-    w_1_t_43 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_44 = n_m1_r0_y*w_1_t_43 + v_4_z*w_1_t_42
-    w_1_t_45 = end_p1_r8_y*inv_w_1_t_113*w_1_t_37
-    w_1_t_46 = end_p1_r8_y*w_1_t_19 + rrrrrr_platform_joint_offset_x*w_1_t_9
-    w_1_t_47 = v_1_x*w_1_t_8
-    w_1_t_48 = (
-    end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) + rrrrrr_platform_joint_offset_x*(w_1_t_47 -
-        v_3_x*w_1_t_7)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_1_t_49 = (
-    end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) + rrrrrr_platform_joint_offset_x*(w_1_t_47 -
-        v_2_x*w_1_t_7)
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
     )
-    w_1_t_50 = v_1_x*w_1_t_35 + w_1_t_19*w_1_t_7 - v_1_y*w_1_t_9
-    w_1_t_51 = inv_w_1_t_113*(n_m1_r0_y*w_1_t_46 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_10)
-    w_1_t_52 = inv_w_1_t_113*(v_4_z*w_1_t_46 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_13)
-    w_1_t_53 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_37
-    w_1_r0_x = s_5*w_1_t_45 - c_5_t*w_1_t_36
-    w_1_r0_y = c_5_t*w_1_t_45 + s_5*w_1_t_36
-    w_1_r2_x = -c_4_t*w_1_t_51 - s_4*w_1_r0_x
-    w_1_r2_y = s_4*w_1_t_51 - c_4_t*w_1_r0_x
-    w_1_r4_x = c_3*w_1_r0_y - s_3*w_1_r2_x
-    w_1_r4_y = c_3*w_1_r2_x + s_3*w_1_r0_y
-    w_1_r5_x = -c_2_t*w_1_r4_x - s_2*w_1_r4_y
-    w_1_r5_y = s_2*w_1_r4_x - c_2_t*w_1_r4_y
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
+    )
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    w_1_t_83 = inv_w_1_t_222*w_1_t_77
+    w_1_t_84 = inv_w_1_t_222*w_1_t_78
+    w_1_t_85 = inv_w_1_t_222*w_1_t_79
+    w_1_t_86 = inv_w_1_t_222*w_1_t_80
+    w_1_t_87 = inv_w_1_t_222*w_1_t_81
+    w_1_t_88 = inv_w_1_t_150*inv_w_1_t_194*w_1_t_58
+    w_1_t_89 = inv_w_1_t_222*(inv_w_1_t_150*w_1_t_64 - w_1_t_76*w_1_t_88)
+    w_1_t_90 = w_1_t_71*w_1_t_88 + w_1_t_83*w_1_t_89 - inv_w_1_t_150*w_1_t_53
+    w_1_t_91 = w_1_t_72*w_1_t_88 + w_1_t_84*w_1_t_89 - inv_w_1_t_150*w_1_t_54
+    w_1_t_92 = w_1_t_73*w_1_t_88 + w_1_t_85*w_1_t_89 - inv_w_1_t_150*w_1_t_55
+    w_1_t_93 = size*(w_1_t_74*w_1_t_88 + w_1_t_86*w_1_t_89 - inv_w_1_t_150*w_1_t_56)
+    w_1_t_94 = size*(w_1_t_75*w_1_t_88 + w_1_t_87*w_1_t_89 - inv_w_1_t_150*w_1_t_57)
     # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_113*w_1_t_32
-    w_2_t_2 = end_p1_r8_y*inv_w_1_t_113*w_1_t_41
-    w_2_t_3 = inv_w_1_t_113*(n_m1_r0_y*w_1_t_48 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_39)
-    w_2_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_48 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_40)
-    w_2_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_41
-    # (rrrrrr-A30) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = s_2*w_1_r5_x
-    d_alpha_1_t_2 = c_2_t*w_1_r5_x
-    d_alpha_1_t_3 = s_2*w_1_r5_y
-    d_alpha_1_t_4 = c_2_t*w_1_r5_y
-    d_alpha_1_t_5 = s_2*w_1_r2_y
-    d_alpha_1_t_6 = c_2_t*w_1_r2_y
-    _x = d_alpha_1_t_3*s_2 - c_2_t*d_alpha_1_t
-    _y = -c_2_t*d_alpha_1_t_3 - d_alpha_1_t*s_2
-    _x_2 = c_2_t*d_alpha_1_t_2 - d_alpha_1_t_4*s_2
-    _y_2 = c_2_t*d_alpha_1_t_4 + d_alpha_1_t_2*s_2
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_r0_x = c_5_t*w_2_t - s_5*w_2_t_2
-    w_2_r0_y = -c_5_t*w_2_t_2 - s_5*w_2_t
-    w_2_r2_x = c_4_t*w_2_t_3 - s_4*w_2_r0_x
-    w_2_r2_y = -c_4_t*w_2_r0_x - s_4*w_2_t_3
-    w_2_r4_x = c_3*w_2_r0_y - s_3*w_2_r2_x
-    w_2_r4_y = c_3*w_2_r2_x + s_3*w_2_r0_y
-    # (rrrrrr-A64) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d_a_o3_t = rrrrrr_joint3_offset_x*w_2_r4_x
-    d_a_o3_t_2 = rrrrrr_joint3_offset_x*w_2_r4_y
-    d_a_o3_t_3 = rrrrrr_joint3_offset_x*w_2_r2_y
-    d_a_o3_t_4 = _x_2*rrrrrr_joint3_offset_x
-    d_a_o3_t_5 = _y_2*rrrrrr_joint3_offset_x
-    d_a_o3_t_6 = d_alpha_1_t_6*rrrrrr_joint3_offset_x
+    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
     # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_113*w_1_t_33
-    w_3_t_2 = end_p1_r8_y*inv_w_1_t_113*w_1_t_44
-    w_3_t_3 = inv_w_1_t_113*(n_m1_r0_y*w_1_t_49 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_42)
-    w_3_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_49 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_43)
-    w_3_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_44
-    # (rrrrrr-A36) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = _x*c_3 + _x_2*s_3
-    _y_3 = _x_2*c_3 - _x*s_3
-    _x_4 = _y*c_3 + _y_2*s_3
-    _y_4 = _y_2*c_3 - _y*s_3
-    _x_5 = c_3*d_alpha_1_t_5 - d_alpha_1_t_6*s_3
-    _y_5 = -c_3*d_alpha_1_t_6 - d_alpha_1_t_5*s_3
-    _x_6 = _x_3*c_3 + _x_4*s_3
-    _y_6 = _x_4*c_3 - _x_3*s_3
-    _x_7 = _y_3*c_3 + _y_4*s_3
-    _y_7 = _y_4*c_3 - _y_3*s_3
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_r0_x = s_5*w_3_t_2 - c_5_t*w_3_t
-    # (rrrrrr-A42) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_zx = c_3*w_2_r4_x + c_5_t*w_3_t_2 + s_3*w_2_r4_y + s_5*w_3_t
-    d_alpha_3_zy = c_3*w_2_r4_y - c_4_t*w_3_t_3 - s_3*w_2_r4_x - s_4*w_3_r0_x
-    d_alpha_3_zz = w_2_r2_y + s_4*w_3_t_3 - c_4_t*w_3_r0_x
-    # (rrrrrr-A64) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d_a_o3_t_7 = d_a_o3_t*s_3
-    d_a_o3_t_8 = c_3*d_a_o3_t
-    d_a_o3_t_9 = d_a_o3_t_2*s_3
-    d_a_o3_t_10 = c_3*d_a_o3_t_2
-    d_a_o3_t_11 = d_a_o3_t_3*s_3
-    d_a_o3_t_12 = c_3*d_a_o3_t_3
-    _x_8 = c_3*d_a_o3_t_7 + d_a_o3_t_9*s_3
-    _y_8 = c_3*d_a_o3_t_9 - d_a_o3_t_7*s_3
-    _x_9 = c_3*d_a_o3_t_8 + d_a_o3_t_10*s_3
-    _y_9 = c_3*d_a_o3_t_10 - d_a_o3_t_8*s_3
-    _x_10 = -c_3*d_a_o3_t_4 - d_a_o3_t_5*s_3
-    _y_10 = d_a_o3_t_4*s_3 - c_3*d_a_o3_t_5
-    # (rrrrrr-A68) coefficient of the acceleration in: acceleration of the origin of joint 4
-    d_a_o4_yx = _x_9 + d_alpha_3_zx*rrrrrr_joint4_offset_x
-    d_a_o4_yy = _y_9 + d_alpha_3_zy*rrrrrr_joint4_offset_x
-    d_a_o4_yz = d_a_o3_t_12 + d_alpha_3_zz*rrrrrr_joint4_offset_x
-    d_a_o4_zx = _x_10 - _x_7*rrrrrr_joint4_offset_x
-    d_a_o4_zy = _y_10 - _y_7*rrrrrr_joint4_offset_x
-    d_a_o4_zz = d_a_o3_t_6 - _y_5*rrrrrr_joint4_offset_x
+    w_3_t = inv_w_1_t_222*w_1_t_83
+    w_3_t_2 = inv_w_1_t_222*w_1_t_84
+    w_3_t_3 = inv_w_1_t_222*w_1_t_85
+    w_3_t_4 = inv_w_1_t_222*size*w_1_t_86
+    w_3_t_5 = inv_w_1_t_222*size*w_1_t_87
     # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = (
-    inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*(w_1_t_12*w_1_t_5 - w_1_t_15*w_1_t_7) -
-        end_p1_r8_y*w_1_t_34)
-    )
-    w_4_t_2 = end_p1_r8_y*inv_w_1_t_113*w_1_t_16
-    w_4_t_3 = inv_w_1_t_113*(end_p1_r8_y*w_1_t_20 + rrrrrr_platform_joint_offset_x*w_1_t_11)
-    w_4_t_4 = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_14 - end_p1_r8_y*w_1_t_22)
-    w_4_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_16
-    # (rrrrrr-A42) coefficient of the acceleration in: angular acceleration of link 3
-    _x_11 = d_alpha_3_zy*s_4 - _y_7*c_4_t
-    _y_11 = -_y_7*s_4 - c_4_t*d_alpha_3_zy
-    _x_12 = d_alpha_3_zz*s_4 - _y_5*c_4_t
-    _y_12 = -_y_5*s_4 - c_4_t*d_alpha_3_zz
-    _x_13 = d_alpha_3_zx*s_4 - _x_7*c_4_t
-    _y_13 = -_x_7*s_4 - c_4_t*d_alpha_3_zx
-    _x_14 = _x_12*s_4 - _x_11*c_4_t
-    _y_14 = -_x_11*s_4 - _x_12*c_4_t
-    _x_15 = _y_12*s_4 - _y_11*c_4_t
-    _y_15 = -_y_11*s_4 - _y_12*c_4_t
-    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 4
-    d_alpha_4_zx = w_4_t_3 + _x_5*s_4 - _y_6*c_4_t
-    d_alpha_4_zy = c_5_t*w_4_t + s_5*w_4_t_2 - _x_5*c_4_t - _y_6*s_4
-    d_alpha_4_zz = _x_6 + c_5_t*w_4_t_2 - s_5*w_4_t
-    # (rrrrrr-A68) coefficient of the acceleration in: acceleration of the origin of joint 4
-    _x_16 = d_a_o4_zy*s_4 - c_4_t*d_a_o4_yy
-    _y_16 = -c_4_t*d_a_o4_zy - d_a_o4_yy*s_4
-    _x_17 = d_a_o4_zz*s_4 - c_4_t*d_a_o4_yz
-    _y_17 = -c_4_t*d_a_o4_zz - d_a_o4_yz*s_4
-    _x_18 = d_a_o4_zx*s_4 - c_4_t*d_a_o4_yx
-    _y_18 = -c_4_t*d_a_o4_zx - d_a_o4_yx*s_4
-    _x_19 = _x_17*s_4 - _x_16*c_4_t
-    _y_19 = -_x_16*s_4 - _x_17*c_4_t
-    _x_20 = _y_17*s_4 - _y_16*c_4_t
-    _y_20 = -_y_16*s_4 - _y_17*c_4_t
-    _x_21 = d_a_o3_t_11*s_4 - _y_8*c_4_t
-    _y_21 = -_y_8*s_4 - c_4_t*d_a_o3_t_11
+    w_4_t = inv_w_1_t_101*inv_w_1_t_150*w_1_t_36
+    w_4_t_2 = inv_w_1_t_194*(inv_w_1_t_101*w_1_t_42 - w_1_t_58*w_4_t)
+    w_4_t_3 = inv_w_1_t_222*(w_1_t_64*w_4_t + w_1_t_76*w_4_t_2 - inv_w_1_t_101*w_1_t_47)
+    w_4_t_4 = w_1_t_53*w_4_t + w_1_t_71*w_4_t_2 - w_1_t_83*w_4_t_3
+    w_4_t_5 = inv_w_1_t_101*w_1_t_32 + w_1_t_54*w_4_t + w_1_t_72*w_4_t_2 - w_1_t_84*w_4_t_3
+    w_4_t_6 = inv_w_1_t_101*w_1_t_33 + w_1_t_55*w_4_t + w_1_t_73*w_4_t_2 - w_1_t_85*w_4_t_3
+    w_4_t_7 = size*(inv_w_1_t_101*w_1_t_34 + w_1_t_56*w_4_t + w_1_t_74*w_4_t_2 - w_1_t_86*w_4_t_3)
+    w_4_t_8 = size*(inv_w_1_t_101*w_1_t_35 + w_1_t_57*w_4_t + w_1_t_75*w_4_t_2 - w_1_t_87*w_4_t_3)
     # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = (
-    inv_w_1_t_113*(n_m2_t*w_1_t_34 + v_4_z*(w_1_t_35*w_1_t_5 - w_1_t_18*w_1_t_7) -
-        n_m1_r0_y*(v_1_y*w_1_t_12 + w_1_t_21*w_1_t_7 - v_1_z*w_1_t_35))
+    w_5_t = inv_w_1_t_101*inv_w_1_t_69*w_1_t_18
+    w_5_t_2 = inv_w_1_t_150*(inv_w_1_t_69*w_1_t_21 + w_1_t_36*w_5_t)
+    w_5_t_3 = inv_w_1_t_194*(inv_w_1_t_69*w_1_t_25 + w_1_t_42*w_5_t - w_1_t_58*w_5_t_2)
+    w_5_t_4 = (
+    inv_w_1_t_222*(inv_w_1_t_69*w_1_t_28 + w_1_t_64*w_5_t_2 + w_1_t_76*w_5_t_3 - w_1_t_47*w_5_t)
     )
-    w_5_t_2 = inv_w_1_t_113*w_1_t_17
-    w_5_t_3 = inv_w_1_t_113*(n_m1_r0_y*w_1_t_50 - n_m2_t*w_1_t_20)
-    w_5_t_4 = inv_w_1_t_113*(n_m2_t*w_1_t_22 + v_4_z*w_1_t_50)
-    w_5_t_5 = inv_w_1_t_113*w_1_t_23
-    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 4
-    _x_22 = d_alpha_4_zy*s_5 - _y_15*c_5_t
-    _y_22 = -_y_15*s_5 - c_5_t*d_alpha_4_zy
-    _x_23 = d_alpha_4_zz*s_5 - _y_13*c_5_t
-    _y_23 = -_y_13*s_5 - c_5_t*d_alpha_4_zz
-    _x_24 = d_alpha_4_zx*s_5 - _x_15*c_5_t
-    _y_24 = -_x_15*s_5 - c_5_t*d_alpha_4_zx
-    _x_25 = _x_23*s_5 - _x_22*c_5_t
-    _y_25 = -_x_22*s_5 - _x_23*c_5_t
-    _x_26 = _y_23*s_5 - _y_22*c_5_t
-    _y_26 = -_y_22*s_5 - _y_23*c_5_t
-    # (rrrrrr-A54) coefficient of the acceleration in: angular acceleration of link 5
-    d_alpha_5_zx = _x_13*s_5 - w_5_t - _y_14*c_5_t
-    d_alpha_5_zy = w_5_t_2 - _x_13*c_5_t - _y_14*s_5
-    d_alpha_5_zz = _x_14 + w_5_t_3
-    # (rrrrrr-N43) coefficient of the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-    d_mu_5_t = J_5_xx*_x_25 + J_5_xy*_x_26 + J_5_xz*d_alpha_5_zx
-    d_mu_5_t_2 = J_5_xy*_y_25 + J_5_yy*_y_26 + J_5_yz*d_alpha_5_zy
-    d_mu_5_t_3 = J_5_xz*_x_24 + J_5_yz*_y_24 + J_5_zz*d_alpha_5_zz
-    d_mu_5_xy = J_5_xx*_y_25 + J_5_xy*_y_26 + J_5_xz*d_alpha_5_zy - h_5_z
-    d_mu_5_xz = h_5_y + J_5_xx*_x_24 + J_5_xy*_y_24 + J_5_xz*d_alpha_5_zz
-    d_mu_5_yx = h_5_z + J_5_xy*_x_25 + J_5_yy*_x_26 + J_5_yz*d_alpha_5_zx
-    d_mu_5_yz = J_5_xy*_x_24 + J_5_yy*_y_24 + J_5_yz*d_alpha_5_zz - h_5_x
-    d_mu_5_zx = J_5_xz*_x_25 + J_5_yz*_x_26 + J_5_zz*d_alpha_5_zx - h_5_y
-    d_mu_5_zy = h_5_x + J_5_xz*_y_25 + J_5_yz*_y_26 + J_5_zz*d_alpha_5_zy
-    _x_27 = -c_5_t*d_mu_5_t - d_mu_5_yx*s_5
-    _y_27 = d_mu_5_t*s_5 - c_5_t*d_mu_5_yx
-    _x_28 = -c_5_t*d_mu_5_xy - d_mu_5_t_2*s_5
-    _y_28 = d_mu_5_xy*s_5 - c_5_t*d_mu_5_t_2
-    # (rrrrrr-N57) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    d_N_4_xx = (
-    d_mu_5_t_3 + J_4_xz*d_alpha_4_zx + J_4_zz*_x_14 - J_4_yz*_x_15 - _x_20*h_4_x - _x_21*h_4_y
+    w_5_t_5 = w_1_t_53*w_5_t_2 + w_1_t_71*w_5_t_3 - w_1_t_83*w_5_t_4
+    w_5_t_6 = (
+    inv_w_1_t_69*w_1_t_16 + w_1_t_32*w_5_t + w_1_t_54*w_5_t_2 + w_1_t_72*w_5_t_3 -
+        w_1_t_84*w_5_t_4
     )
-    d_N_4_xy = (
-    J_4_xz*d_alpha_4_zy + J_4_zz*_y_14 - J_4_yz*_y_15 - _y_20*h_4_x - _y_21*h_4_y -
-        c_5_t*d_mu_5_zx - d_mu_5_zy*s_5
+    w_5_t_7 = w_1_t_33*w_5_t + w_1_t_55*w_5_t_2 + w_1_t_73*w_5_t_3 - w_1_t_85*w_5_t_4
+    w_5_t_8 = size*(w_1_t_34*w_5_t + w_1_t_56*w_5_t_2 + w_1_t_74*w_5_t_3 - w_1_t_86*w_5_t_4)
+    w_5_t_9 = (
+    size*(w_1_t_35*w_5_t + w_1_t_57*w_5_t_2 + w_1_t_75*w_5_t_3 - inv_w_1_t_69*w_1_t_17 -
+        w_1_t_87*w_5_t_4)
     )
-    d_N_4_xz = (
-    J_4_xz*d_alpha_4_zz + J_4_zz*_x_13 + d_mu_5_zx*s_5 - J_4_yz*_y_13 - _x_8*h_4_y - _y_18*h_4_x -
-        c_5_t*d_mu_5_zy
+    # (rrrrrr-N112) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = L_c5_r5_y*inv_w_1_t_69
+    d_Gamma_1_t_2 = inv_w_1_t_101*(L_c4_2_r0_y - d_Gamma_1_t*w_1_t_18)
+    d_Gamma_1_t_3 = inv_w_1_t_150*(Jc_1_zz + d_Gamma_1_t_2*w_1_t_36 - d_Gamma_1_t*w_1_t_21)
+    d_Gamma_1_t_4 = (
+    inv_w_1_t_194*(_y_4 + d_Gamma_1_t_2*w_1_t_42 - d_Gamma_1_t*w_1_t_25 - d_Gamma_1_t_3*w_1_t_58)
     )
-    d_N_4_yx = (
-    J_4_yy*_x_15 + _x_19*h_4_x - J_4_xy*d_alpha_4_zx - J_4_yz*_x_14 - _x_21*h_4_z -
-        c_5_t*d_mu_5_xz - d_mu_5_yz*s_5
+    d_Gamma_1_t_5 = (
+    inv_w_1_t_222*(L_c3_2_r0_y + d_Gamma_1_t*w_1_t_28 + d_Gamma_1_t_2*w_1_t_47 -
+        d_Gamma_1_t_3*w_1_t_64 - d_Gamma_1_t_4*w_1_t_76)
     )
-    d_N_4_yy = (
-    J_4_yy*_y_15 + _y_19*h_4_x - J_4_xy*d_alpha_4_zy - J_4_yz*_y_14 - _x_27*c_5_t - _x_28*s_5 -
-        _y_21*h_4_z
+    d_Gamma_1_x = (
+    d_Gamma_1_t_3*w_1_t_53 + d_Gamma_1_t_4*w_1_t_71 + d_Gamma_1_t_5*w_1_t_83 + e_1_r6_y*h_5_z +
+        h_5_y*v_1_t
     )
-    d_N_4_yz = (
-    J_4_yy*_y_13 + _x_18*h_4_x + _x_27*s_5 - J_4_xy*d_alpha_4_zz - J_4_yz*_x_13 - _x_28*c_5_t -
-        _x_8*h_4_z
+    d_Gamma_1_y = (
+    d_Gamma_1_t*w_1_t_16 - d_Gamma_1_t_2*w_1_t_32 - d_Gamma_1_t_3*w_1_t_54 -
+        d_Gamma_1_t_4*w_1_t_72 - d_Gamma_1_t_5*w_1_t_84 - e_1_r6_x*h_5_z - h_5_x*v_1_t
     )
-    d_N_4_zx = (
-    J_4_xx*d_alpha_4_zx + J_4_xz*_x_14 + _x_19*h_4_y + _x_20*h_4_z + d_mu_5_xz*s_5 - J_4_xy*_x_15
-        - c_5_t*d_mu_5_yz
+    d_Gamma_1_z = (
+    d_Gamma_1_t_2*w_1_t_33 + d_Gamma_1_t_3*w_1_t_55 + d_Gamma_1_t_4*w_1_t_73 +
+        d_Gamma_1_t_5*w_1_t_85 + e_1_r6_x*h_5_y - e_1_r6_y*h_5_x
     )
-    d_N_4_zy = (
-    J_4_xx*d_alpha_4_zy + J_4_xz*_y_14 + _y_19*h_4_y + _y_20*h_4_z - J_4_xy*_y_15 - _y_27*c_5_t -
-        _y_28*s_5
+    # (rrrrrr-N102) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = h_5_z*v_2_t_2 - h_5_y*s_4
+    d_Gamma_2_t_2 = h_5_z*v_2_t - h_5_x*s_4
+    d_Gamma_2_t_3 = h_5_y*v_2_t - h_5_x*v_2_t_2
+    d_Gamma_2_t_4 = L_c5_r2_y*inv_w_1_t_69
+    d_Gamma_2_t_5 = d_Gamma_2_t_4*w_1_t_18
+    d_Gamma_2_t_6 = inv_w_1_t_101*(L_c4_2_z - d_Gamma_2_t_5)
+    d_Gamma_2_t_7 = d_Gamma_2_t_4*w_1_t_21
+    d_Gamma_2_t_8 = inv_w_1_t_150*(_y_4 + d_Gamma_2_t_6*w_1_t_36 - d_Gamma_2_t_7)
+    d_Gamma_2_t_9 = d_Gamma_2_t_4*w_1_t_25
+    d_Gamma_2_t_10 = (
+    inv_w_1_t_194*(Jc_2_zz + d_Gamma_2_t_6*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_2_t_8*w_1_t_58)
     )
-    d_N_4_zz = (
-    J_4_xx*d_alpha_4_zz + J_4_xz*_x_13 + _x_18*h_4_y + _y_18*h_4_z + _y_27*s_5 - J_4_xy*_y_13 -
-        _y_28*c_5_t
+    d_Gamma_2_t_11 = d_Gamma_2_t_4*w_1_t_28
+    d_Gamma_2_t_12 = (
+    inv_w_1_t_222*(L_c3_2_z + d_Gamma_2_t_11 + d_Gamma_2_t_6*w_1_t_47 - d_Gamma_2_t_10*w_1_t_76 -
+        d_Gamma_2_t_8*w_1_t_64)
     )
-    # (rrrrrr-N31) coefficient of the acceleration in: inertia force of link 4 less its weight
-    d_f_4_xx = _x_15*h_4_x + _x_19*rrrrrr_link4_mass + d_alpha_4_zx*h_4_y
-    d_f_4_xy = _y_15*h_4_x + _y_19*rrrrrr_link4_mass + d_alpha_4_zy*h_4_y
-    d_f_4_xz = _x_18*rrrrrr_link4_mass + _y_13*h_4_x + d_alpha_4_zz*h_4_y
-    d_f_4_yx = _x_20*rrrrrr_link4_mass + d_alpha_4_zx*h_4_z - _x_14*h_4_x
-    d_f_4_yy = _y_20*rrrrrr_link4_mass + d_alpha_4_zy*h_4_z - _y_14*h_4_x
-    d_f_4_yz = _y_18*rrrrrr_link4_mass + d_alpha_4_zz*h_4_z - _x_13*h_4_x
-    d_f_4_zx = _x_21*rrrrrr_link4_mass - _x_14*h_4_y - _x_15*h_4_z
-    d_f_4_zy = _y_21*rrrrrr_link4_mass - _y_14*h_4_y - _y_15*h_4_z
-    # (rrrrrr-N57) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    _x_29 = -c_4_t*d_N_4_xx - d_N_4_yx*s_4
-    _y_29 = d_N_4_xx*s_4 - c_4_t*d_N_4_yx
-    _x_30 = -c_4_t*d_N_4_xy - d_N_4_yy*s_4
-    _y_30 = d_N_4_xy*s_4 - c_4_t*d_N_4_yy
-    # (rrrrrr-N31) coefficient of the acceleration in: inertia force of link 4 less its weight
-    _x_31 = -c_4_t*d_f_4_xx - d_f_4_yx*s_4
-    _y_31 = d_f_4_xx*s_4 - c_4_t*d_f_4_yx
-    _x_32 = -c_4_t*d_f_4_xy - d_f_4_yy*s_4
-    _y_32 = d_f_4_xy*s_4 - c_4_t*d_f_4_yy
-    _x_33 = -c_4_t*d_f_4_xz - d_f_4_yz*s_4
-    _y_33 = d_f_4_xz*s_4 - c_4_t*d_f_4_yz
-    _x_34 = -_x_31*c_4_t - _x_32*s_4
-    _y_34 = _x_31*s_4 - _x_32*c_4_t
-    _x_35 = -_y_31*c_4_t - _y_32*s_4
-    _y_35 = _y_31*s_4 - _y_32*c_4_t
-    # (rrrrrr-N71) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d_N_3_xx = (
-    d_N_4_zz + J_3_xx*_x_6 + J_3_xy*_x_7 + J_3_xz*d_alpha_3_zx + _x_10*h_3_y - _x_9*h_3_z
+    d_Gamma_2_t_13 = d_Gamma_2_t_4*w_1_t_16
+    d_Gamma_2_x = (
+    d_Gamma_2_t + d_Gamma_2_t_10*w_1_t_71 + d_Gamma_2_t_12*w_1_t_83 + d_Gamma_2_t_8*w_1_t_53
     )
-    d_N_3_xy = (
-    J_3_xx*_y_6 + J_3_xy*_y_7 + J_3_xz*d_alpha_3_zy + _y_10*h_3_y - _y_9*h_3_z - c_4_t*d_N_4_zx -
-        d_N_4_zy*s_4
+    d_Gamma_2_y = (
+    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_2_t_10*w_1_t_72 - d_Gamma_2_t_12*w_1_t_84 -
+        d_Gamma_2_t_6*w_1_t_32 - d_Gamma_2_t_8*w_1_t_54
     )
-    d_N_3_xz = (
-    J_3_xx*_x_5 + J_3_xy*_y_5 + J_3_xz*d_alpha_3_zz + d_N_4_zx*s_4 + d_a_o3_t_6*h_3_y -
-        c_4_t*d_N_4_zy - d_a_o3_t_12*h_3_z
+    d_Gamma_2_z = (
+    d_Gamma_2_t_3 + d_Gamma_2_t_10*w_1_t_73 + d_Gamma_2_t_12*w_1_t_85 + d_Gamma_2_t_6*w_1_t_33 +
+        d_Gamma_2_t_8*w_1_t_55
     )
-    d_N_3_yx = (
-    J_3_xy*_x_6 + J_3_yy*_x_7 + J_3_yz*d_alpha_3_zx + _x_8*h_3_z - _x_10*h_3_x -
-        _y_33*rrrrrr_joint4_offset_x - c_4_t*d_N_4_xz - d_N_4_yz*s_4
+    # (rrrrrr-N90) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = inv_w_1_t_101*(L_c4_3_z - d_Gamma_2_t_5)
+    d_Gamma_3_t_2 = inv_w_1_t_150*(L_c3_2_r0_y + d_Gamma_3_t*w_1_t_36 - d_Gamma_2_t_7)
+    d_Gamma_3_t_3 = (
+    inv_w_1_t_194*(L_c3_2_z + d_Gamma_3_t*w_1_t_42 - d_Gamma_2_t_9 - d_Gamma_3_t_2*w_1_t_58)
     )
-    d_N_3_yy = (
-    J_3_xy*_y_6 + J_3_yy*_y_7 + J_3_yz*d_alpha_3_zy + _y_8*h_3_z - _x_29*c_4_t - _x_30*s_4 -
-        _x_35*rrrrrr_joint4_offset_x - _y_10*h_3_x
+    d_Gamma_3_t_4 = (
+    inv_w_1_t_222*(Jc_3_zz + d_Gamma_2_t_11 + d_Gamma_3_t*w_1_t_47 - d_Gamma_3_t_2*w_1_t_64 -
+        d_Gamma_3_t_3*w_1_t_76)
     )
-    d_N_3_yz = (
-    J_3_xy*_x_5 + J_3_yy*_y_5 + J_3_yz*d_alpha_3_zz + _x_29*s_4 + d_a_o3_t_11*h_3_z - _x_30*c_4_t
-        - _y_35*rrrrrr_joint4_offset_x - d_a_o3_t_6*h_3_x
+    d_Gamma_3_x = (
+    d_Gamma_2_t + d_Gamma_3_t_2*w_1_t_53 + d_Gamma_3_t_3*w_1_t_71 + d_Gamma_3_t_4*w_1_t_83
     )
-    d_N_3_zx = (
-    J_3_xz*_x_6 + J_3_yz*_x_7 + J_3_zz*d_alpha_3_zx + _x_33*rrrrrr_joint4_offset_x + _x_9*h_3_x +
-        d_N_4_xz*s_4 - _x_8*h_3_y - c_4_t*d_N_4_yz
+    d_Gamma_3_y = (
+    d_Gamma_2_t_13 - d_Gamma_2_t_2 - d_Gamma_3_t*w_1_t_32 - d_Gamma_3_t_2*w_1_t_54 -
+        d_Gamma_3_t_3*w_1_t_72 - d_Gamma_3_t_4*w_1_t_84
     )
-    d_N_3_zy = (
-    J_3_xz*_y_6 + J_3_yz*_y_7 + J_3_zz*d_alpha_3_zy + _x_34*rrrrrr_joint4_offset_x + _y_9*h_3_x -
-        _y_29*c_4_t - _y_30*s_4 - _y_8*h_3_y
+    d_Gamma_3_z = (
+    d_Gamma_2_t_3 + d_Gamma_3_t*w_1_t_33 + d_Gamma_3_t_2*w_1_t_55 + d_Gamma_3_t_3*w_1_t_73 +
+        d_Gamma_3_t_4*w_1_t_85
     )
-    d_N_3_zz = (
-    J_3_xz*_x_5 + J_3_yz*_y_5 + J_3_zz*d_alpha_3_zz + _y_29*s_4 + _y_34*rrrrrr_joint4_offset_x +
-        d_a_o3_t_12*h_3_x - _y_30*c_4_t - d_a_o3_t_11*h_3_y
+    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d_Gamma_4_t = _y*inv_w_1_t_69
+    d_Gamma_4_t_2 = inv_w_1_t_101*(Jc_4_zz - d_Gamma_4_t*w_1_t_18)
+    d_Gamma_4_t_3 = inv_w_1_t_150*(L_c4_2_r0_y + d_Gamma_4_t_2*w_1_t_36 - d_Gamma_4_t*w_1_t_21)
+    d_Gamma_4_t_4 = (
+    inv_w_1_t_194*(L_c4_2_z + d_Gamma_4_t_2*w_1_t_42 - d_Gamma_4_t*w_1_t_25 -
+        d_Gamma_4_t_3*w_1_t_58)
     )
-    # (rrrrrr-N75) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    d_T_3_zx = _y_33 + _x_10*rrrrrr_link3_mass + _x_6*h_3_y - _x_7*h_3_x
-    d_T_3_zy = _x_35 + _y_10*rrrrrr_link3_mass + _y_6*h_3_y - _y_7*h_3_x
-    # (rrrrrr-N71) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    _x_36 = c_3*d_N_3_xx - d_N_3_yx*s_3
-    _y_36 = c_3*d_N_3_yx + d_N_3_xx*s_3
-    _x_37 = c_3*d_N_3_xy - d_N_3_yy*s_3
-    _y_37 = c_3*d_N_3_yy + d_N_3_xy*s_3
-    # (rrrrrr-N75) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    _y_38 = (
-    c_3*(_x_33 + _x_9*rrrrrr_link3_mass + d_alpha_3_zx*h_3_x - _x_6*h_3_z) + s_3*(_x_7*h_3_z +
-        _x_8*rrrrrr_link3_mass + _x_8*rrrrrr_link4_mass - _x_13*h_4_y - _y_13*h_4_z -
-        d_alpha_3_zx*h_3_y)
+    d_Gamma_4_t_5 = (
+    inv_w_1_t_222*(L_c4_3_z + d_Gamma_4_t*w_1_t_28 + d_Gamma_4_t_2*w_1_t_47 -
+        d_Gamma_4_t_3*w_1_t_64 - d_Gamma_4_t_4*w_1_t_76)
     )
-    _y_39 = (
-    c_3*(_x_34 + _y_9*rrrrrr_link3_mass + d_alpha_3_zy*h_3_x - _y_6*h_3_z) + s_3*(_y_7*h_3_z +
-        _y_8*rrrrrr_link3_mass - c_4_t*d_f_4_zx - d_alpha_3_zy*h_3_y - d_f_4_zy*s_4)
+    d_Gamma_4_x = (
+    d_Gamma_4_t_3*w_1_t_53 + d_Gamma_4_t_4*w_1_t_71 + d_Gamma_4_t_5*w_1_t_83 - c_5_t*h_5_z
     )
-    _y_40 = (
-    c_3*(_y_34 + d_a_o3_t_12*rrrrrr_link3_mass + d_alpha_3_zz*h_3_x - _x_5*h_3_z) +
-        s_3*(_y_5*h_3_z + d_a_o3_t_11*rrrrrr_link3_mass + d_f_4_zx*s_4 - c_4_t*d_f_4_zy -
-        d_alpha_3_zz*h_3_y)
+    d_Gamma_4_y = (
+    d_Gamma_4_t*w_1_t_16 - d_Gamma_4_t_2*w_1_t_32 - d_Gamma_4_t_3*w_1_t_54 -
+        d_Gamma_4_t_4*w_1_t_72 - d_Gamma_4_t_5*w_1_t_84 - h_5_z*s_5
     )
-    # (rrrrrr-N89) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_yz = (
-    J_2_xy*d_alpha_1_t_5 + J_2_yz*w_2_r2_y + c_3*d_N_3_yz + d_N_3_xz*s_3 - J_2_yy*d_alpha_1_t_6 -
-        rrrrrr_joint3_offset_x*(_y_35 + _x_5*h_3_y + d_a_o3_t_6*rrrrrr_link3_mass - _y_5*h_3_x)
+    d_Gamma_4_z = (
+    c_5_t*h_5_x + d_Gamma_4_t_2*w_1_t_33 + d_Gamma_4_t_3*w_1_t_55 + d_Gamma_4_t_4*w_1_t_73 +
+        d_Gamma_4_t_5*w_1_t_85 + h_5_y*s_5
     )
-    d_N_2_zx = (
-    J_2_xz*_x + J_2_yz*_x_2 + J_2_zz*w_2_r4_x + c_3*d_N_3_zx + rrrrrr_joint3_offset_x*(_y_38*c_3 -
-        _y_39*s_3) - d_N_3_zy*s_3
+    # (rrrrrr-N68) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+    d_Gamma_5_t = J_5_zz*inv_w_1_t_69
+    d_Gamma_5_t_2 = inv_w_1_t_101*(_y - d_Gamma_5_t*w_1_t_18)
+    d_Gamma_5_t_3 = inv_w_1_t_150*(L_c5_r5_y + d_Gamma_5_t_2*w_1_t_36 - d_Gamma_5_t*w_1_t_21)
+    d_Gamma_5_t_4 = (
+    inv_w_1_t_194*(L_c5_r2_y + d_Gamma_5_t_2*w_1_t_42 - d_Gamma_5_t*w_1_t_25 -
+        d_Gamma_5_t_3*w_1_t_58)
     )
-    d_N_2_zy = (
-    J_2_xz*_y + J_2_yz*_y_2 + J_2_zz*w_2_r4_y + c_3*d_N_3_zy + d_N_3_zx*s_3 +
-        rrrrrr_joint3_offset_x*(_y_38*s_3 + _y_39*c_3)
+    d_Gamma_5_t_5 = (
+    inv_w_1_t_222*(L_c5_r2_y + d_Gamma_5_t*w_1_t_28 + d_Gamma_5_t_2*w_1_t_47 -
+        d_Gamma_5_t_3*w_1_t_64 - d_Gamma_5_t_4*w_1_t_76)
     )
-    d_N_2_zz = (
-    d_N_3_zz + J_2_xz*d_alpha_1_t_5 + J_2_zz*w_2_r2_y + _y_40*rrrrrr_joint3_offset_x -
-        J_2_yz*d_alpha_1_t_6
+    d_Gamma_5_t_6 = (
+    d_Gamma_5_t_2*w_1_t_33 + d_Gamma_5_t_3*w_1_t_55 + d_Gamma_5_t_4*w_1_t_73 +
+        d_Gamma_5_t_5*w_1_t_85
     )
-    d_N_2_t = (
-    c_2_t*(J_2_xy*_x + J_2_yy*_x_2 + J_2_yz*w_2_r4_x + _y_36*c_3 - _y_37*s_3 -
-        rrrrrr_joint3_offset_x*(c_3*d_T_3_zx - d_T_3_zy*s_3))
+    d_Gamma_5_x = d_Gamma_5_t_3*w_1_t_53 + d_Gamma_5_t_4*w_1_t_71 + d_Gamma_5_t_5*w_1_t_83 - h_5_y
+    d_Gamma_5_y = (
+    h_5_x + d_Gamma_5_t*w_1_t_16 - d_Gamma_5_t_2*w_1_t_32 - d_Gamma_5_t_3*w_1_t_54 -
+        d_Gamma_5_t_4*w_1_t_72 - d_Gamma_5_t_5*w_1_t_84
     )
-    _y_41 = s_2*(J_2_xx*_x + J_2_xy*_x_2 + J_2_xz*w_2_r4_x + _x_36*c_3 - _x_37*s_3) - d_N_2_t
-    d_N_2_t_2 = (
-    c_2_t*(J_2_xy*_y + J_2_yy*_y_2 + J_2_yz*w_2_r4_y + _y_36*s_3 + _y_37*c_3 -
-        rrrrrr_joint3_offset_x*(c_3*d_T_3_zy + d_T_3_zx*s_3))
+    # (rrrrrr-A48) coefficient of the acceleration in: angular acceleration of link 5
+    d_alpha_5_xz = s_5*w_4_t_6 + v_2_t*w_3_t_3 - e_1_r6_x*w_1_t_92 - v_2_t*w_2_t_4
+    d_alpha_5_yz = v_2_t_2*w_3_t_3 - c_5_t*w_4_t_6 - e_1_r6_y*w_1_t_92 - v_2_t_2*w_2_t_4
+    d_alpha_5_zy = w_5_t_6 - s_4*w_2_t_3 - s_4*w_3_t_2 - v_1_t*w_1_t_91
+    d_alpha_5_zz = s_4*w_3_t_3 + v_1_t*w_1_t_92 - w_5_t_7 - s_4*w_2_t_4
+    # (rrrrrr-N25) coefficient of the acceleration in: inertia force of link 5 from its turning about its reference point
+    d_phi_5_t = (
+    h_5_z*(v_2_t_2*w_2_t_2 + v_2_t_2*w_3_t - c_5_t*w_4_t_4 - e_1_r6_y*w_1_t_90) -
+        h_5_y*(s_4*w_2_t_2 + s_4*w_3_t + v_1_t*w_1_t_90 - w_5_t_5)
     )
-    _y_42 = s_2*(J_2_xx*_y + J_2_xy*_y_2 + J_2_xz*w_2_r4_y + _x_36*s_3 + _x_37*c_3) - d_N_2_t_2
-    # (rrrrrr-N107) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_zx = (
-    J_1_xx*w_1_r2_y + s_2*(J_2_xx*d_alpha_1_t_5 + J_2_xz*w_2_r2_y + c_3*d_N_3_xz -
-        J_2_xy*d_alpha_1_t_6 - d_N_3_yz*s_3) - c_2_t*d_N_2_yz
-    )
-    d_N_1_zy = J_1_xx*w_1_r5_x - _y_41*c_2_t - _y_42*s_2
-    d_N_1_zz = J_1_xx*w_1_r5_y + _y_41*s_2 - _y_42*c_2_t
-    # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r1_x = d_N_1_zz*s_2 - c_2_t*d_N_1_zy
-    d_Gamma_1_r1_y = -c_2_t*d_N_1_zz - d_N_1_zy*s_2
-    d_Gamma_1_r2_x = c_3*d_Gamma_1_r1_x + d_Gamma_1_r1_y*s_3
-    d_Gamma_1_r2_y = c_3*d_Gamma_1_r1_y - d_Gamma_1_r1_x*s_3
-    d_Gamma_1_r4_x = d_N_1_zx*s_4 - c_4_t*d_Gamma_1_r2_y
-    d_Gamma_1_r4_y = -c_4_t*d_N_1_zx - d_Gamma_1_r2_y*s_4
-    d_Gamma_1_r6_x = d_Gamma_1_r2_x*s_5 - c_5_t*d_Gamma_1_r4_y
-    d_Gamma_1_r6_y = -c_5_t*d_Gamma_1_r2_x - d_Gamma_1_r4_y*s_5
-    # (rrrrrr-N97) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_r0_x = c_3*d_N_2_zx + d_N_2_zy*s_3
-    d_Gamma_2_r0_y = c_3*d_N_2_zy - d_N_2_zx*s_3
-    d_Gamma_2_r2_x = d_N_2_zz*s_4 - c_4_t*d_Gamma_2_r0_y
-    d_Gamma_2_r2_y = -c_4_t*d_N_2_zz - d_Gamma_2_r0_y*s_4
-    d_Gamma_2_r4_x = d_Gamma_2_r0_x*s_5 - c_5_t*d_Gamma_2_r2_y
-    d_Gamma_2_r4_y = -c_5_t*d_Gamma_2_r0_x - d_Gamma_2_r2_y*s_5
-    # (rrrrrr-N79) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d_Gamma_3_r1_x = d_N_3_zz*s_4 - c_4_t*d_N_3_zy
-    d_Gamma_3_r1_y = -c_4_t*d_N_3_zz - d_N_3_zy*s_4
-    d_Gamma_3_r3_x = d_N_3_zx*s_5 - c_5_t*d_Gamma_3_r1_y
-    d_Gamma_3_r3_y = -c_5_t*d_N_3_zx - d_Gamma_3_r1_y*s_5
-    # (rrrrrr-N61) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d_Gamma_4_r1_x = d_N_4_zz*s_5 - c_5_t*d_N_4_zy
-    d_Gamma_4_r1_y = -c_5_t*d_N_4_zz - d_N_4_zy*s_5
-    # (rrrrrr-N123) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrrr-N132) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    d_Gamma_2_r4_x*w_2_t + d_Gamma_4_r1_x*w_4_t + d_alpha_5_zx*h_5_y + d_mu_5_zx*w_5_t -
-        _x_26*h_5_z - d_Gamma_1_r6_x*w_1_t_36 - d_Gamma_3_r3_x*w_3_t
+    d_Gamma_1_x*w_1_t_90 + d_Gamma_5_x*w_5_t_5 - d_phi_5_t - d_Gamma_2_x*w_2_t_2 -
+        d_Gamma_3_x*w_3_t - d_Gamma_4_x*w_4_t_4
     )
     d_c_xy = (
-    d_Gamma_2_r4_y*w_2_t + d_Gamma_4_r1_y*w_4_t + d_alpha_5_zy*h_5_y + d_mu_5_zy*w_5_t -
-        _y_26*h_5_z - d_Gamma_1_r6_y*w_1_t_36 - d_Gamma_3_r3_y*w_3_t
+    d_Gamma_1_y*w_1_t_90 + d_Gamma_5_y*w_5_t_5 + d_alpha_5_zy*h_5_y - d_Gamma_2_y*w_2_t_2 -
+        d_Gamma_3_y*w_3_t - d_Gamma_4_y*w_4_t_4 - h_5_z*(c_5_t*w_4_t_5 + e_1_r6_y*w_1_t_91 -
+        v_2_t_2*w_2_t_3 - v_2_t_2*w_3_t_2)
     )
     d_c_xz = (
-    d_Gamma_2_r2_x*w_2_t + d_N_4_zx*w_4_t + d_alpha_5_zz*h_5_y + d_mu_5_t_3*w_5_t - _y_24*h_5_z -
-        d_Gamma_1_r4_x*w_1_t_36 - d_Gamma_3_r1_x*w_3_t
+    d_Gamma_1_z*w_1_t_90 + d_Gamma_5_t_6*w_5_t_5 + d_alpha_5_zz*h_5_y - d_Gamma_2_z*w_2_t_2 -
+        d_Gamma_3_z*w_3_t - d_Gamma_4_z*w_4_t_4 - d_alpha_5_yz*h_5_z
+    )
+    d_c_yy = (
+    d_Gamma_2_y*w_2_t_3 + d_Gamma_3_y*w_3_t_2 + d_Gamma_4_y*w_4_t_5 + h_5_z*(e_1_r6_x*w_1_t_91 -
+        s_5*w_4_t_5 - v_2_t*w_2_t_3 - v_2_t*w_3_t_2) - d_Gamma_1_y*w_1_t_91 - d_Gamma_5_y*w_5_t_6
+        - d_alpha_5_zy*h_5_x
     )
     d_c_yz = (
-    _x_24*h_5_z + d_Gamma_1_r4_x*w_1_t_45 + d_Gamma_3_r1_x*w_3_t_2 + d_N_4_zx*w_4_t_2 -
-        d_Gamma_2_r2_x*w_2_t_2 - d_alpha_5_zz*h_5_x - d_mu_5_t_3*w_5_t_2
+    d_Gamma_2_z*w_2_t_3 + d_Gamma_3_z*w_3_t_2 + d_Gamma_4_z*w_4_t_5 + d_alpha_5_xz*h_5_z -
+        d_Gamma_1_z*w_1_t_91 - d_Gamma_5_t_6*w_5_t_6 - d_alpha_5_zz*h_5_x
     )
-    # (rrrrrr-N125) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = (
-    d_c_xx + d_Gamma_2_r4_y*w_2_t_2 + d_alpha_5_zy*h_5_x + d_mu_5_zy*w_5_t_2 - _y_25*h_5_z -
-        d_Gamma_1_r6_y*w_1_t_45 - d_Gamma_3_r3_y*w_3_t_2 - d_Gamma_4_r1_y*w_4_t_2
-    )
+    # (rrrrrr-N134) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
     Q_t_3 = (
-    d_c_xx + _x_24*h_5_y + d_Gamma_1_r4_x*w_1_t_51 + d_Gamma_3_r1_x*w_3_t_3 + d_N_4_zx*w_4_t_3 +
-        d_mu_5_t_3*w_5_t_3 - _y_24*h_5_x - d_Gamma_2_r2_x*w_2_t_3
+    d_c_xx + d_Gamma_3_z*w_3_t_3 + d_Gamma_4_z*w_4_t_6 + d_alpha_5_xz*h_5_y - d_Gamma_1_z*w_1_t_92
+        - d_Gamma_2_z*w_2_t_4 - d_Gamma_5_t_6*w_5_t_7 - d_alpha_5_yz*h_5_x
     )
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
@@ -3915,369 +3346,112 @@ def _M_rrrrrr(c, k, x, s, f):
     Q_t_18 = Q_t_7*axis_y_rrrrrr_axes5_in_base_z - Q_t_10*axis_z_rrrrrr_axes5_in_base_z
     Q_t_19 = 2.0*Q_t_18 + d_c_xx
     # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_52
-    o_1_t_2 = end_p1_r8_y*w_1_t_53
-    o_1_y = -end_p1_r6_x*w_1_t_53 - end_p1_r8_x*w_1_t_52
-    o_1_r0_x = -c_5_t*o_1_t - o_1_y*s_5
-    o_1_r0_y = o_1_t*s_5 - c_5_t*o_1_y
-    o_1_r2_x = -c_4_t*o_1_t_2 - o_1_r0_x*s_4
-    o_1_r2_y = o_1_t_2*s_4 - c_4_t*o_1_r0_x
-    o_1_r4_x = c_3*o_1_r0_y - o_1_r2_x*s_3
-    o_1_r4_y = c_3*o_1_r2_x + o_1_r0_y*s_3
-    o_1_r5_x = -c_2_t*o_1_r4_x - o_1_r4_y*s_2
-    o_1_r5_y = o_1_r4_x*s_2 - c_2_t*o_1_r4_y
+    o_1_t = end_p1_r8_y*w_1_t_93
+    o_1_t_2 = end_p1_r8_y*w_1_t_94
+    o_1_y = end_p1_r6_x*w_1_t_94 - end_p1_r8_x*w_1_t_93
     # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_4
-    o_2_t_2 = end_p1_r8_y*w_2_t_5
-    o_2_y = end_p1_r6_x*w_2_t_5 + end_p1_r8_x*w_2_t_4
-    # (rrrrrr-A29) coefficient of the acceleration in: angular acceleration of link 1
-    d0_alpha_1_t = o_1_r5_x*s_2
-    d0_alpha_1_t_2 = c_2_t*o_1_r5_x
-    d0_alpha_1_t_3 = o_1_r5_y*s_2
-    d0_alpha_1_t_4 = c_2_t*o_1_r5_y
-    d0_alpha_1_t_5 = o_1_r2_y*s_2
-    d0_alpha_1_t_6 = c_2_t*o_1_r2_y
-    _x_38 = d0_alpha_1_t_3*s_2 - c_2_t*d0_alpha_1_t
-    _y_43 = -c_2_t*d0_alpha_1_t_3 - d0_alpha_1_t*s_2
-    _x_39 = c_2_t*d0_alpha_1_t_2 - d0_alpha_1_t_4*s_2
-    _y_44 = c_2_t*d0_alpha_1_t_4 + d0_alpha_1_t_2*s_2
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_r0_x = c_5_t*o_2_t - o_2_y*s_5
-    o_2_r0_y = -c_5_t*o_2_y - o_2_t*s_5
-    o_2_r2_x = c_4_t*o_2_t_2 - o_2_r0_x*s_4
-    o_2_r2_y = -c_4_t*o_2_r0_x - o_2_t_2*s_4
-    o_2_r4_x = c_3*o_2_r0_y - o_2_r2_x*s_3
-    o_2_r4_y = c_3*o_2_r2_x + o_2_r0_y*s_3
-    # (rrrrrr-A63) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d0_a_o3_t = o_2_r4_x*rrrrrr_joint3_offset_x
-    d0_a_o3_t_2 = o_2_r4_y*rrrrrr_joint3_offset_x
-    d0_a_o3_t_3 = o_2_r2_y*rrrrrr_joint3_offset_x
-    d0_a_o3_t_4 = _x_39*rrrrrr_joint3_offset_x
-    d0_a_o3_t_5 = _y_44*rrrrrr_joint3_offset_x
-    d0_a_o3_t_6 = d0_alpha_1_t_6*rrrrrr_joint3_offset_x
+    o_2_t = end_p1_r8_y*w_2_t_5
+    o_2_t_2 = end_p1_r8_y*w_2_t_6
+    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
     # (rrrrrr-V30) moment part of reciprocal wrench 3
     o_3_t = end_p1_r8_y*w_3_t_4
     o_3_t_2 = end_p1_r8_y*w_3_t_5
-    o_3_y = -end_p1_r6_x*w_3_t_5 - end_p1_r8_x*w_3_t_4
-    # (rrrrrr-A35) coefficient of the acceleration in: angular acceleration of link 2
-    _x_40 = _x_38*c_3 + _x_39*s_3
-    _y_45 = _x_39*c_3 - _x_38*s_3
-    _x_41 = _y_43*c_3 + _y_44*s_3
-    _y_46 = _y_44*c_3 - _y_43*s_3
-    _x_42 = c_3*d0_alpha_1_t_5 - d0_alpha_1_t_6*s_3
-    _y_47 = -c_3*d0_alpha_1_t_6 - d0_alpha_1_t_5*s_3
-    _x_43 = _x_40*c_3 + _x_41*s_3
-    _y_48 = _x_41*c_3 - _x_40*s_3
-    _x_44 = _y_45*c_3 + _y_46*s_3
-    _y_49 = _y_46*c_3 - _y_45*s_3
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_r0_x = -c_5_t*o_3_t - o_3_y*s_5
-    # (rrrrrr-A41) coefficient of the acceleration in: angular acceleration of link 3
-    d0_alpha_3_zx = c_3*o_2_r4_x + o_2_r4_y*s_3 + o_3_t*s_5 - c_5_t*o_3_y
-    d0_alpha_3_zy = c_3*o_2_r4_y - c_4_t*o_3_t_2 - o_2_r4_x*s_3 - o_3_r0_x*s_4
-    d0_alpha_3_zz = o_2_r2_y + o_3_t_2*s_4 - c_4_t*o_3_r0_x
-    # (rrrrrr-A63) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d0_a_o3_t_7 = d0_a_o3_t*s_3
-    d0_a_o3_t_8 = c_3*d0_a_o3_t
-    d0_a_o3_t_9 = d0_a_o3_t_2*s_3
-    d0_a_o3_t_10 = c_3*d0_a_o3_t_2
-    d0_a_o3_t_11 = d0_a_o3_t_3*s_3
-    d0_a_o3_t_12 = c_3*d0_a_o3_t_3
-    _x_45 = c_3*d0_a_o3_t_7 + d0_a_o3_t_9*s_3
-    _y_50 = c_3*d0_a_o3_t_9 - d0_a_o3_t_7*s_3
-    _x_46 = c_3*d0_a_o3_t_8 + d0_a_o3_t_10*s_3
-    _y_51 = c_3*d0_a_o3_t_10 - d0_a_o3_t_8*s_3
-    _x_47 = -c_3*d0_a_o3_t_4 - d0_a_o3_t_5*s_3
-    _y_52 = d0_a_o3_t_4*s_3 - c_3*d0_a_o3_t_5
-    # (rrrrrr-A67) coefficient of the acceleration in: acceleration of the origin of joint 4
-    d0_a_o4_yx = _x_46 + d0_alpha_3_zx*rrrrrr_joint4_offset_x
-    d0_a_o4_yy = _y_51 + d0_alpha_3_zy*rrrrrr_joint4_offset_x
-    d0_a_o4_yz = d0_a_o3_t_12 + d0_alpha_3_zz*rrrrrr_joint4_offset_x
-    d0_a_o4_zx = _x_47 - _x_44*rrrrrr_joint4_offset_x
-    d0_a_o4_zy = _y_52 - _y_49*rrrrrr_joint4_offset_x
-    d0_a_o4_zz = d0_a_o3_t_6 - _y_47*rrrrrr_joint4_offset_x
+    o_3_y = end_p1_r8_x*w_3_t_4 - end_p1_r6_x*w_3_t_5
     # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t_4
-    o_4_t_2 = end_p1_r8_y*w_4_t_5
-    o_4_y = -end_p1_r6_x*w_4_t_5 - end_p1_r8_x*w_4_t_4
-    # (rrrrrr-A41) coefficient of the acceleration in: angular acceleration of link 3
-    _x_48 = d0_alpha_3_zy*s_4 - _y_49*c_4_t
-    _y_53 = -_y_49*s_4 - c_4_t*d0_alpha_3_zy
-    _x_49 = d0_alpha_3_zz*s_4 - _y_47*c_4_t
-    _y_54 = -_y_47*s_4 - c_4_t*d0_alpha_3_zz
-    _x_50 = d0_alpha_3_zx*s_4 - _x_44*c_4_t
-    _y_55 = -_x_44*s_4 - c_4_t*d0_alpha_3_zx
-    _x_51 = _x_49*s_4 - _x_48*c_4_t
-    _y_56 = -_x_48*s_4 - _x_49*c_4_t
-    _x_52 = _y_54*s_4 - _y_53*c_4_t
-    _y_57 = -_y_53*s_4 - _y_54*c_4_t
-    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 4
-    d0_alpha_4_zx = o_4_t_2 + _x_42*s_4 - _y_48*c_4_t
-    d0_alpha_4_zy = -_x_42*c_4_t - _y_48*s_4 - c_5_t*o_4_t - o_4_y*s_5
-    d0_alpha_4_zz = _x_43 + o_4_t*s_5 - c_5_t*o_4_y
-    # (rrrrrr-A67) coefficient of the acceleration in: acceleration of the origin of joint 4
-    _x_53 = d0_a_o4_zy*s_4 - c_4_t*d0_a_o4_yy
-    _y_58 = -c_4_t*d0_a_o4_zy - d0_a_o4_yy*s_4
-    _x_54 = d0_a_o4_zz*s_4 - c_4_t*d0_a_o4_yz
-    _y_59 = -c_4_t*d0_a_o4_zz - d0_a_o4_yz*s_4
-    _x_55 = d0_a_o4_zx*s_4 - c_4_t*d0_a_o4_yx
-    _y_60 = -c_4_t*d0_a_o4_zx - d0_a_o4_yx*s_4
-    _x_56 = _x_54*s_4 - _x_53*c_4_t
-    _y_61 = -_x_53*s_4 - _x_54*c_4_t
-    _x_57 = _y_59*s_4 - _y_58*c_4_t
-    _y_62 = -_y_58*s_4 - _y_59*c_4_t
-    _x_58 = d0_a_o3_t_11*s_4 - _y_50*c_4_t
-    _y_63 = -_y_50*s_4 - c_4_t*d0_a_o3_t_11
+    o_4_t = end_p1_r8_y*w_4_t_7
+    o_4_t_2 = end_p1_r8_y*w_4_t_8
+    o_4_y = end_p1_r8_x*w_4_t_7 - end_p1_r6_x*w_4_t_8
     # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t_4
-    o_5_t_2 = end_p1_r8_y*w_5_t_5
-    o_5_y = -end_p1_r6_x*w_5_t_5 - end_p1_r8_x*w_5_t_4
-    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 4
-    _x_59 = d0_alpha_4_zy*s_5 - _y_57*c_5_t
-    _y_64 = -_y_57*s_5 - c_5_t*d0_alpha_4_zy
-    _x_60 = d0_alpha_4_zz*s_5 - _y_55*c_5_t
-    _y_65 = -_y_55*s_5 - c_5_t*d0_alpha_4_zz
-    _x_61 = d0_alpha_4_zx*s_5 - _x_52*c_5_t
-    _y_66 = -_x_52*s_5 - c_5_t*d0_alpha_4_zx
-    _x_62 = _x_60*s_5 - _x_59*c_5_t
-    _y_67 = -_x_59*s_5 - _x_60*c_5_t
-    _x_63 = _y_65*s_5 - _y_64*c_5_t
-    _y_68 = -_y_64*s_5 - _y_65*c_5_t
-    # (rrrrrr-A53) coefficient of the acceleration in: angular acceleration of link 5
-    d0_alpha_5_zx = o_5_t + _x_50*s_5 - _y_56*c_5_t
-    d0_alpha_5_zy = o_5_y - _x_50*c_5_t - _y_56*s_5
-    d0_alpha_5_zz = _x_51 + o_5_t_2
-    # (rrrrrr-N42) coefficient of the acceleration in: inertia moment of the links that turn with link 5, about their reference points
-    d0_mu_5_xx = J_5_xx*_x_62 + J_5_xy*_x_63 + J_5_xz*d0_alpha_5_zx
-    d0_mu_5_xy = J_5_xx*_y_67 + J_5_xy*_y_68 + J_5_xz*d0_alpha_5_zy
-    d0_mu_5_xz = J_5_xx*_x_61 + J_5_xy*_y_66 + J_5_xz*d0_alpha_5_zz
-    d0_mu_5_yx = J_5_xy*_x_62 + J_5_yy*_x_63 + J_5_yz*d0_alpha_5_zx
-    d0_mu_5_yy = J_5_xy*_y_67 + J_5_yy*_y_68 + J_5_yz*d0_alpha_5_zy
-    d0_mu_5_yz = J_5_xy*_x_61 + J_5_yy*_y_66 + J_5_yz*d0_alpha_5_zz
-    d0_mu_5_zx = J_5_xz*_x_62 + J_5_yz*_x_63 + J_5_zz*d0_alpha_5_zx
-    d0_mu_5_zy = J_5_xz*_y_67 + J_5_yz*_y_68 + J_5_zz*d0_alpha_5_zy
-    d0_mu_5_zz = J_5_xz*_x_61 + J_5_yz*_y_66 + J_5_zz*d0_alpha_5_zz
-    _x_64 = -c_5_t*d0_mu_5_xx - d0_mu_5_yx*s_5
-    _y_69 = d0_mu_5_xx*s_5 - c_5_t*d0_mu_5_yx
-    _x_65 = -c_5_t*d0_mu_5_xy - d0_mu_5_yy*s_5
-    _y_70 = d0_mu_5_xy*s_5 - c_5_t*d0_mu_5_yy
-    # (rrrrrr-N56) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    d0_N_4_xx = (
-    d0_mu_5_zz + J_4_xz*d0_alpha_4_zx + J_4_zz*_x_51 - J_4_yz*_x_52 - _x_57*h_4_x - _x_58*h_4_y
+    o_5_t = end_p1_r8_y*w_5_t_8
+    o_5_t_2 = end_p1_r8_y*w_5_t_9
+    o_5_y = end_p1_r6_x*w_5_t_9 - end_p1_r8_x*w_5_t_8
+    # (rrrrrr-N111) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d0_Gamma_1_x = (
+    Jc_1_zz*o_1_t + L_c5_r5_y*o_5_t - L_c3_2_r0_y*o_3_t - L_c4_2_r0_y*o_4_t - _y_4*o_2_t
     )
-    d0_N_4_xy = (
-    J_4_xz*d0_alpha_4_zy + J_4_zz*_y_56 - J_4_yz*_y_57 - _y_62*h_4_x - _y_63*h_4_y -
-        c_5_t*d0_mu_5_zx - d0_mu_5_zy*s_5
+    d0_Gamma_1_y = (
+    Jc_1_zz*o_1_y + L_c3_2_r0_y*o_3_y + L_c4_2_r0_y*o_4_y + L_c5_r5_y*o_5_y + _y_4*o_2_y
     )
-    d0_N_4_xz = (
-    J_4_xz*d0_alpha_4_zz + J_4_zz*_x_50 + d0_mu_5_zx*s_5 - J_4_yz*_y_55 - _x_45*h_4_y -
-        _y_60*h_4_x - c_5_t*d0_mu_5_zy
+    d0_Gamma_1_z = (
+    L_c3_2_r0_y*o_3_t_2 + L_c4_2_r0_y*o_4_t_2 + _y_4*o_2_t_2 - Jc_1_zz*o_1_t_2 - L_c5_r5_y*o_5_t_2
     )
-    d0_N_4_yx = (
-    J_4_yy*_x_52 + _x_56*h_4_x - J_4_xy*d0_alpha_4_zx - J_4_yz*_x_51 - _x_58*h_4_z -
-        c_5_t*d0_mu_5_xz - d0_mu_5_yz*s_5
+    # (rrrrrr-N101) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d0_Gamma_2_t = L_c5_r2_y*o_5_t
+    d0_Gamma_2_t_2 = L_c5_r2_y*o_5_y
+    d0_Gamma_2_t_3 = L_c5_r2_y*o_5_t_2
+    d0_Gamma_2_x = d0_Gamma_2_t + _y_4*o_1_t - Jc_2_zz*o_2_t - L_c3_2_z*o_3_t - L_c4_2_z*o_4_t
+    d0_Gamma_2_y = d0_Gamma_2_t_2 + Jc_2_zz*o_2_y + L_c3_2_z*o_3_y + L_c4_2_z*o_4_y + _y_4*o_1_y
+    d0_Gamma_2_z = (
+    Jc_2_zz*o_2_t_2 + L_c3_2_z*o_3_t_2 + L_c4_2_z*o_4_t_2 - d0_Gamma_2_t_3 - _y_4*o_1_t_2
     )
-    d0_N_4_yy = (
-    J_4_yy*_y_57 + _y_61*h_4_x - J_4_xy*d0_alpha_4_zy - J_4_yz*_y_56 - _x_64*c_5_t - _x_65*s_5 -
-        _y_63*h_4_z
+    # (rrrrrr-N89) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d0_Gamma_3_x = (
+    d0_Gamma_2_t + L_c3_2_r0_y*o_1_t - Jc_3_zz*o_3_t - L_c3_2_z*o_2_t - L_c4_3_z*o_4_t
     )
-    d0_N_4_yz = (
-    J_4_yy*_y_55 + _x_55*h_4_x + _x_64*s_5 - J_4_xy*d0_alpha_4_zz - J_4_yz*_x_50 - _x_45*h_4_z -
-        _x_65*c_5_t
+    d0_Gamma_3_y = (
+    d0_Gamma_2_t_2 + Jc_3_zz*o_3_y + L_c3_2_r0_y*o_1_y + L_c3_2_z*o_2_y + L_c4_3_z*o_4_y
     )
-    d0_N_4_zx = (
-    J_4_xx*d0_alpha_4_zx + J_4_xz*_x_51 + _x_56*h_4_y + _x_57*h_4_z + d0_mu_5_xz*s_5 -
-        J_4_xy*_x_52 - c_5_t*d0_mu_5_yz
+    d0_Gamma_3_z = (
+    Jc_3_zz*o_3_t_2 + L_c3_2_z*o_2_t_2 + L_c4_3_z*o_4_t_2 - d0_Gamma_2_t_3 - L_c3_2_r0_y*o_1_t_2
     )
-    d0_N_4_zy = (
-    J_4_xx*d0_alpha_4_zy + J_4_xz*_y_56 + _y_61*h_4_y + _y_62*h_4_z - J_4_xy*_y_57 - _y_69*c_5_t -
-        _y_70*s_5
+    # (rrrrrr-N77) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d0_Gamma_4_x = L_c4_2_r0_y*o_1_t + _y*o_5_t - Jc_4_zz*o_4_t - L_c4_2_z*o_2_t - L_c4_3_z*o_3_t
+    d0_Gamma_4_y = Jc_4_zz*o_4_y + L_c4_2_r0_y*o_1_y + L_c4_2_z*o_2_y + L_c4_3_z*o_3_y + _y*o_5_y
+    d0_Gamma_4_z = (
+    Jc_4_zz*o_4_t_2 + L_c4_2_z*o_2_t_2 + L_c4_3_z*o_3_t_2 - L_c4_2_r0_y*o_1_t_2 - _y*o_5_t_2
     )
-    d0_N_4_zz = (
-    J_4_xx*d0_alpha_4_zz + J_4_xz*_x_50 + _x_55*h_4_y + _y_60*h_4_z + _y_69*s_5 - J_4_xy*_y_55 -
-        _y_70*c_5_t
+    # (rrrrrr-N67) coefficient of the acceleration in: moment about axis 5 of the distal links' inertia and weight
+    d0_Gamma_5_x = J_5_zz*o_5_t + L_c5_r5_y*o_1_t - L_c5_r2_y*o_2_t - L_c5_r2_y*o_3_t - _y*o_4_t
+    d0_Gamma_5_y = J_5_zz*o_5_y + L_c5_r2_y*o_2_y + L_c5_r2_y*o_3_y + L_c5_r5_y*o_1_y + _y*o_4_y
+    d0_Gamma_5_z = (
+    L_c5_r2_y*o_2_t_2 + L_c5_r2_y*o_3_t_2 + _y*o_4_t_2 - J_5_zz*o_5_t_2 - L_c5_r5_y*o_1_t_2
     )
-    # (rrrrrr-N30) coefficient of the acceleration in: inertia force of link 4 less its weight
-    d0_f_4_xx = _x_52*h_4_x + _x_56*rrrrrr_link4_mass + d0_alpha_4_zx*h_4_y
-    d0_f_4_xy = _y_57*h_4_x + _y_61*rrrrrr_link4_mass + d0_alpha_4_zy*h_4_y
-    d0_f_4_xz = _x_55*rrrrrr_link4_mass + _y_55*h_4_x + d0_alpha_4_zz*h_4_y
-    d0_f_4_yx = _x_57*rrrrrr_link4_mass + d0_alpha_4_zx*h_4_z - _x_51*h_4_x
-    d0_f_4_yy = _y_62*rrrrrr_link4_mass + d0_alpha_4_zy*h_4_z - _y_56*h_4_x
-    d0_f_4_yz = _y_60*rrrrrr_link4_mass + d0_alpha_4_zz*h_4_z - _x_50*h_4_x
-    d0_f_4_zx = _x_58*rrrrrr_link4_mass - _x_51*h_4_y - _x_52*h_4_z
-    d0_f_4_zy = _y_63*rrrrrr_link4_mass - _y_56*h_4_y - _y_57*h_4_z
-    # (rrrrrr-N56) coefficient of the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
-    _x_66 = -c_4_t*d0_N_4_xx - d0_N_4_yx*s_4
-    _y_71 = d0_N_4_xx*s_4 - c_4_t*d0_N_4_yx
-    _x_67 = -c_4_t*d0_N_4_xy - d0_N_4_yy*s_4
-    _y_72 = d0_N_4_xy*s_4 - c_4_t*d0_N_4_yy
-    # (rrrrrr-N30) coefficient of the acceleration in: inertia force of link 4 less its weight
-    _x_68 = -c_4_t*d0_f_4_xx - d0_f_4_yx*s_4
-    _y_73 = d0_f_4_xx*s_4 - c_4_t*d0_f_4_yx
-    _x_69 = -c_4_t*d0_f_4_xy - d0_f_4_yy*s_4
-    _y_74 = d0_f_4_xy*s_4 - c_4_t*d0_f_4_yy
-    _x_70 = -c_4_t*d0_f_4_xz - d0_f_4_yz*s_4
-    _y_75 = d0_f_4_xz*s_4 - c_4_t*d0_f_4_yz
-    _x_71 = -_x_68*c_4_t - _x_69*s_4
-    _y_76 = _x_68*s_4 - _x_69*c_4_t
-    _x_72 = -_y_73*c_4_t - _y_74*s_4
-    _y_77 = _y_73*s_4 - _y_74*c_4_t
-    # (rrrrrr-N70) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d0_N_3_xx = (
-    d0_N_4_zz + J_3_xx*_x_43 + J_3_xy*_x_44 + J_3_xz*d0_alpha_3_zx + _x_47*h_3_y - _x_46*h_3_z
-    )
-    d0_N_3_xy = (
-    J_3_xx*_y_48 + J_3_xy*_y_49 + J_3_xz*d0_alpha_3_zy + _y_52*h_3_y - _y_51*h_3_z -
-        c_4_t*d0_N_4_zx - d0_N_4_zy*s_4
-    )
-    d0_N_3_xz = (
-    J_3_xx*_x_42 + J_3_xy*_y_47 + J_3_xz*d0_alpha_3_zz + d0_N_4_zx*s_4 + d0_a_o3_t_6*h_3_y -
-        c_4_t*d0_N_4_zy - d0_a_o3_t_12*h_3_z
-    )
-    d0_N_3_yx = (
-    J_3_xy*_x_43 + J_3_yy*_x_44 + J_3_yz*d0_alpha_3_zx + _x_45*h_3_z - _x_47*h_3_x -
-        _y_75*rrrrrr_joint4_offset_x - c_4_t*d0_N_4_xz - d0_N_4_yz*s_4
-    )
-    d0_N_3_yy = (
-    J_3_xy*_y_48 + J_3_yy*_y_49 + J_3_yz*d0_alpha_3_zy + _y_50*h_3_z - _x_66*c_4_t - _x_67*s_4 -
-        _x_72*rrrrrr_joint4_offset_x - _y_52*h_3_x
-    )
-    d0_N_3_yz = (
-    J_3_xy*_x_42 + J_3_yy*_y_47 + J_3_yz*d0_alpha_3_zz + _x_66*s_4 + d0_a_o3_t_11*h_3_z -
-        _x_67*c_4_t - _y_77*rrrrrr_joint4_offset_x - d0_a_o3_t_6*h_3_x
-    )
-    d0_N_3_zx = (
-    J_3_xz*_x_43 + J_3_yz*_x_44 + J_3_zz*d0_alpha_3_zx + _x_46*h_3_x +
-        _x_70*rrrrrr_joint4_offset_x + d0_N_4_xz*s_4 - _x_45*h_3_y - c_4_t*d0_N_4_yz
-    )
-    d0_N_3_zy = (
-    J_3_xz*_y_48 + J_3_yz*_y_49 + J_3_zz*d0_alpha_3_zy + _x_71*rrrrrr_joint4_offset_x +
-        _y_51*h_3_x - _y_50*h_3_y - _y_71*c_4_t - _y_72*s_4
-    )
-    d0_N_3_zz = (
-    J_3_xz*_x_42 + J_3_yz*_y_47 + J_3_zz*d0_alpha_3_zz + _y_71*s_4 + _y_76*rrrrrr_joint4_offset_x
-        + d0_a_o3_t_12*h_3_x - _y_72*c_4_t - d0_a_o3_t_11*h_3_y
-    )
-    # (rrrrrr-N74) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    d0_T_3_zx = _y_75 + _x_43*h_3_y + _x_47*rrrrrr_link3_mass - _x_44*h_3_x
-    d0_T_3_zy = _x_72 + _y_48*h_3_y + _y_52*rrrrrr_link3_mass - _y_49*h_3_x
-    # (rrrrrr-N70) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    _x_73 = c_3*d0_N_3_xx - d0_N_3_yx*s_3
-    _y_78 = c_3*d0_N_3_yx + d0_N_3_xx*s_3
-    _x_74 = c_3*d0_N_3_xy - d0_N_3_yy*s_3
-    _y_79 = c_3*d0_N_3_yy + d0_N_3_xy*s_3
-    # (rrrrrr-N74) coefficient of the acceleration in: inertia force of the links from 3 outwards, the last link left out
-    _y_80 = (
-    c_3*(_x_70 + _x_46*rrrrrr_link3_mass + d0_alpha_3_zx*h_3_x - _x_43*h_3_z) + s_3*(_x_44*h_3_z +
-        _x_45*rrrrrr_link3_mass + _x_45*rrrrrr_link4_mass - _x_50*h_4_y - _y_55*h_4_z -
-        d0_alpha_3_zx*h_3_y)
-    )
-    _y_81 = (
-    c_3*(_x_71 + _y_51*rrrrrr_link3_mass + d0_alpha_3_zy*h_3_x - _y_48*h_3_z) + s_3*(_y_49*h_3_z +
-        _y_50*rrrrrr_link3_mass - c_4_t*d0_f_4_zx - d0_alpha_3_zy*h_3_y - d0_f_4_zy*s_4)
-    )
-    _y_82 = (
-    c_3*(_y_76 + d0_a_o3_t_12*rrrrrr_link3_mass + d0_alpha_3_zz*h_3_x - _x_42*h_3_z) +
-        s_3*(_y_47*h_3_z + d0_a_o3_t_11*rrrrrr_link3_mass + d0_f_4_zx*s_4 - c_4_t*d0_f_4_zy -
-        d0_alpha_3_zz*h_3_y)
-    )
-    # (rrrrrr-N88) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d0_N_2_yz = (
-    J_2_xy*d0_alpha_1_t_5 + J_2_yz*o_2_r2_y + c_3*d0_N_3_yz + d0_N_3_xz*s_3 -
-        J_2_yy*d0_alpha_1_t_6 - rrrrrr_joint3_offset_x*(_y_77 + _x_42*h_3_y +
-        d0_a_o3_t_6*rrrrrr_link3_mass - _y_47*h_3_x)
-    )
-    d0_N_2_zx = (
-    J_2_xz*_x_38 + J_2_yz*_x_39 + J_2_zz*o_2_r4_x + c_3*d0_N_3_zx +
-        rrrrrr_joint3_offset_x*(_y_80*c_3 - _y_81*s_3) - d0_N_3_zy*s_3
-    )
-    d0_N_2_zy = (
-    J_2_xz*_y_43 + J_2_yz*_y_44 + J_2_zz*o_2_r4_y + c_3*d0_N_3_zy + d0_N_3_zx*s_3 +
-        rrrrrr_joint3_offset_x*(_y_80*s_3 + _y_81*c_3)
-    )
-    d0_N_2_zz = (
-    d0_N_3_zz + J_2_xz*d0_alpha_1_t_5 + J_2_zz*o_2_r2_y + _y_82*rrrrrr_joint3_offset_x -
-        J_2_yz*d0_alpha_1_t_6
-    )
-    d0_N_2_t = (
-    c_2_t*(J_2_xy*_x_38 + J_2_yy*_x_39 + J_2_yz*o_2_r4_x + _y_78*c_3 - _y_79*s_3 -
-        rrrrrr_joint3_offset_x*(c_3*d0_T_3_zx - d0_T_3_zy*s_3))
-    )
-    _y_83 = s_2*(J_2_xx*_x_38 + J_2_xy*_x_39 + J_2_xz*o_2_r4_x + _x_73*c_3 - _x_74*s_3) - d0_N_2_t
-    d0_N_2_t_2 = (
-    c_2_t*(J_2_xy*_y_43 + J_2_yy*_y_44 + J_2_yz*o_2_r4_y + _y_78*s_3 + _y_79*c_3 -
-        rrrrrr_joint3_offset_x*(c_3*d0_T_3_zy + d0_T_3_zx*s_3))
-    )
-    _y_84 = (
-    s_2*(J_2_xx*_y_43 + J_2_xy*_y_44 + J_2_xz*o_2_r4_y + _x_73*s_3 + _x_74*c_3) - d0_N_2_t_2
-    )
-    # (rrrrrr-N106) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d0_N_1_zx = (
-    J_1_xx*o_1_r2_y + s_2*(J_2_xx*d0_alpha_1_t_5 + J_2_xz*o_2_r2_y + c_3*d0_N_3_xz -
-        J_2_xy*d0_alpha_1_t_6 - d0_N_3_yz*s_3) - c_2_t*d0_N_2_yz
-    )
-    d0_N_1_zy = J_1_xx*o_1_r5_x - _y_83*c_2_t - _y_84*s_2
-    d0_N_1_zz = J_1_xx*o_1_r5_y + _y_83*s_2 - _y_84*c_2_t
-    # (rrrrrr-N110) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d0_Gamma_1_r1_x = d0_N_1_zz*s_2 - c_2_t*d0_N_1_zy
-    d0_Gamma_1_r1_y = -c_2_t*d0_N_1_zz - d0_N_1_zy*s_2
-    d0_Gamma_1_r2_x = c_3*d0_Gamma_1_r1_x + d0_Gamma_1_r1_y*s_3
-    d0_Gamma_1_r2_y = c_3*d0_Gamma_1_r1_y - d0_Gamma_1_r1_x*s_3
-    d0_Gamma_1_r4_x = d0_N_1_zx*s_4 - c_4_t*d0_Gamma_1_r2_y
-    d0_Gamma_1_r4_y = -c_4_t*d0_N_1_zx - d0_Gamma_1_r2_y*s_4
-    d0_Gamma_1_r6_x = d0_Gamma_1_r2_x*s_5 - c_5_t*d0_Gamma_1_r4_y
-    d0_Gamma_1_r6_y = -c_5_t*d0_Gamma_1_r2_x - d0_Gamma_1_r4_y*s_5
-    # (rrrrrr-N96) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d0_Gamma_2_r0_x = c_3*d0_N_2_zx + d0_N_2_zy*s_3
-    d0_Gamma_2_r0_y = c_3*d0_N_2_zy - d0_N_2_zx*s_3
-    d0_Gamma_2_r2_x = d0_N_2_zz*s_4 - c_4_t*d0_Gamma_2_r0_y
-    d0_Gamma_2_r2_y = -c_4_t*d0_N_2_zz - d0_Gamma_2_r0_y*s_4
-    d0_Gamma_2_r4_x = d0_Gamma_2_r0_x*s_5 - c_5_t*d0_Gamma_2_r2_y
-    d0_Gamma_2_r4_y = -c_5_t*d0_Gamma_2_r0_x - d0_Gamma_2_r2_y*s_5
-    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
-    d0_Gamma_3_r1_x = d0_N_3_zz*s_4 - c_4_t*d0_N_3_zy
-    d0_Gamma_3_r1_y = -c_4_t*d0_N_3_zz - d0_N_3_zy*s_4
-    d0_Gamma_3_r3_x = d0_N_3_zx*s_5 - c_5_t*d0_Gamma_3_r1_y
-    d0_Gamma_3_r3_y = -c_5_t*d0_N_3_zx - d0_Gamma_3_r1_y*s_5
-    # (rrrrrr-N60) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
-    d0_Gamma_4_r1_x = d0_N_4_zz*s_5 - c_5_t*d0_N_4_zy
-    d0_Gamma_4_r1_y = -c_5_t*d0_N_4_zz - d0_N_4_zy*s_5
-    # (rrrrrr-N122) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrrr-A47) coefficient of the acceleration in: angular acceleration of link 5
+    d0_alpha_5_xx = e_1_r6_x*o_1_t - o_2_t*v_2_t - o_3_t*v_2_t - o_4_t*s_5
+    d0_alpha_5_xy = e_1_r6_x*o_1_y + o_2_y*v_2_t + o_3_y*v_2_t + o_4_y*s_5
+    d0_alpha_5_xz = o_2_t_2*v_2_t + o_3_t_2*v_2_t + o_4_t_2*s_5 - e_1_r6_x*o_1_t_2
+    d0_alpha_5_yx = c_5_t*o_4_t + e_1_r6_y*o_1_t - o_2_t*v_2_t_2 - o_3_t*v_2_t_2
+    d0_alpha_5_yy = e_1_r6_y*o_1_y + o_2_y*v_2_t_2 + o_3_y*v_2_t_2 - c_5_t*o_4_y
+    d0_alpha_5_yz = o_2_t_2*v_2_t_2 + o_3_t_2*v_2_t_2 - c_5_t*o_4_t_2 - e_1_r6_y*o_1_t_2
+    d0_alpha_5_zx = o_5_t - o_1_t*v_1_t - o_2_t*s_4 - o_3_t*s_4
+    d0_alpha_5_zy = o_5_y + o_2_y*s_4 + o_3_y*s_4 - o_1_y*v_1_t
+    d0_alpha_5_zz = o_1_t_2*v_1_t + o_2_t_2*s_4 + o_3_t_2*s_4 - o_5_t_2
+    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d0_c_xx = (
-    d0_Gamma_2_r4_x*w_2_t + d0_Gamma_4_r1_x*w_4_t + d0_alpha_5_zx*h_5_y + d0_mu_5_zx*w_5_t -
-        _x_63*h_5_z - d0_Gamma_1_r6_x*w_1_t_36 - d0_Gamma_3_r3_x*w_3_t
+    d0_Gamma_1_x*w_1_t_90 + d0_Gamma_5_x*w_5_t_5 + d0_alpha_5_zx*h_5_y - d0_Gamma_2_x*w_2_t_2 -
+        d0_Gamma_3_x*w_3_t - d0_Gamma_4_x*w_4_t_4 - d0_alpha_5_yx*h_5_z
     )
     d0_c_xy = (
-    d0_Gamma_2_r4_y*w_2_t + d0_Gamma_4_r1_y*w_4_t + d0_alpha_5_zy*h_5_y + d0_mu_5_zy*w_5_t -
-        _y_68*h_5_z - d0_Gamma_1_r6_y*w_1_t_36 - d0_Gamma_3_r3_y*w_3_t
+    d0_Gamma_1_y*w_1_t_90 + d0_Gamma_5_y*w_5_t_5 + d0_alpha_5_zy*h_5_y - d0_Gamma_2_y*w_2_t_2 -
+        d0_Gamma_3_y*w_3_t - d0_Gamma_4_y*w_4_t_4 - d0_alpha_5_yy*h_5_z
     )
     d0_c_xz = (
-    d0_Gamma_2_r2_x*w_2_t + d0_N_4_zx*w_4_t + d0_alpha_5_zz*h_5_y + d0_mu_5_zz*w_5_t - _y_66*h_5_z
-        - d0_Gamma_1_r4_x*w_1_t_36 - d0_Gamma_3_r1_x*w_3_t
+    d0_Gamma_1_z*w_1_t_90 + d0_Gamma_5_z*w_5_t_5 + d0_alpha_5_zz*h_5_y - d0_Gamma_2_z*w_2_t_2 -
+        d0_Gamma_3_z*w_3_t - d0_Gamma_4_z*w_4_t_4 - d0_alpha_5_yz*h_5_z
     )
     d0_c_yx = (
-    _x_62*h_5_z + d0_Gamma_1_r6_x*w_1_t_45 + d0_Gamma_3_r3_x*w_3_t_2 + d0_Gamma_4_r1_x*w_4_t_2 -
-        d0_Gamma_2_r4_x*w_2_t_2 - d0_alpha_5_zx*h_5_x - d0_mu_5_zx*w_5_t_2
+    d0_Gamma_2_x*w_2_t_3 + d0_Gamma_3_x*w_3_t_2 + d0_Gamma_4_x*w_4_t_5 + d0_alpha_5_xx*h_5_z -
+        d0_Gamma_1_x*w_1_t_91 - d0_Gamma_5_x*w_5_t_6 - d0_alpha_5_zx*h_5_x
     )
     d0_c_yy = (
-    _y_67*h_5_z + d0_Gamma_1_r6_y*w_1_t_45 + d0_Gamma_3_r3_y*w_3_t_2 + d0_Gamma_4_r1_y*w_4_t_2 -
-        d0_Gamma_2_r4_y*w_2_t_2 - d0_alpha_5_zy*h_5_x - d0_mu_5_zy*w_5_t_2
+    d0_Gamma_2_y*w_2_t_3 + d0_Gamma_3_y*w_3_t_2 + d0_Gamma_4_y*w_4_t_5 + d0_alpha_5_xy*h_5_z -
+        d0_Gamma_1_y*w_1_t_91 - d0_Gamma_5_y*w_5_t_6 - d0_alpha_5_zy*h_5_x
     )
     d0_c_yz = (
-    _x_61*h_5_z + d0_Gamma_1_r4_x*w_1_t_45 + d0_Gamma_3_r1_x*w_3_t_2 + d0_N_4_zx*w_4_t_2 -
-        d0_Gamma_2_r2_x*w_2_t_2 - d0_alpha_5_zz*h_5_x - d0_mu_5_zz*w_5_t_2
+    d0_Gamma_2_z*w_2_t_3 + d0_Gamma_3_z*w_3_t_2 + d0_Gamma_4_z*w_4_t_5 + d0_alpha_5_xz*h_5_z -
+        d0_Gamma_1_z*w_1_t_91 - d0_Gamma_5_z*w_5_t_6 - d0_alpha_5_zz*h_5_x
     )
     d0_c_zx = (
-    _x_63*h_5_x + d0_Gamma_2_r4_x*w_2_t_3 - _x_62*h_5_y - d0_Gamma_1_r6_x*w_1_t_51 -
-        d0_Gamma_3_r3_x*w_3_t_3 - d0_Gamma_4_r1_x*w_4_t_3 - d0_mu_5_zx*w_5_t_3
+    d0_Gamma_1_x*w_1_t_92 + d0_Gamma_2_x*w_2_t_4 + d0_Gamma_5_x*w_5_t_7 + d0_alpha_5_yx*h_5_x -
+        d0_Gamma_3_x*w_3_t_3 - d0_Gamma_4_x*w_4_t_6 - d0_alpha_5_xx*h_5_y
     )
     d0_c_zy = (
-    _y_68*h_5_x + d0_Gamma_2_r4_y*w_2_t_3 - _y_67*h_5_y - d0_Gamma_1_r6_y*w_1_t_51 -
-        d0_Gamma_3_r3_y*w_3_t_3 - d0_Gamma_4_r1_y*w_4_t_3 - d0_mu_5_zy*w_5_t_3
+    d0_Gamma_1_y*w_1_t_92 + d0_Gamma_2_y*w_2_t_4 + d0_Gamma_5_y*w_5_t_7 + d0_alpha_5_yy*h_5_x -
+        d0_Gamma_3_y*w_3_t_3 - d0_Gamma_4_y*w_4_t_6 - d0_alpha_5_xy*h_5_y
     )
     d0_c_zz = (
-    _y_66*h_5_x + d0_Gamma_2_r2_x*w_2_t_3 - _x_61*h_5_y - d0_Gamma_1_r4_x*w_1_t_51 -
-        d0_Gamma_3_r1_x*w_3_t_3 - d0_N_4_zx*w_4_t_3 - d0_mu_5_zz*w_5_t_3
+    d0_Gamma_1_z*w_1_t_92 + d0_Gamma_2_z*w_2_t_4 + d0_Gamma_5_z*w_5_t_7 + d0_alpha_5_yz*h_5_x -
+        d0_Gamma_3_z*w_3_t_3 - d0_Gamma_4_z*w_4_t_6 - d0_alpha_5_xz*h_5_y
     )
     # (M2) coupling block of M
     q_in_base_x = (
@@ -4300,404 +3474,243 @@ def _M_rrrrrr(c, k, x, s, f):
     M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
     M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
     M_ta_t_11 = M_ta_t_2 - M_ta_t_6
-    # (rrrrrr-N122) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    _x_75 = -c_5_t*d0_c_xx - d0_c_yx*s_5
-    _y_85 = d0_c_xx*s_5 - c_5_t*d0_c_yx
-    _x_76 = -c_5_t*d0_c_xy - d0_c_yy*s_5
-    _y_86 = d0_c_xy*s_5 - c_5_t*d0_c_yy
-    _x_77 = -c_5_t*d0_c_xz - d0_c_yz*s_5
-    _y_87 = d0_c_xz*s_5 - c_5_t*d0_c_yz
-    _x_78 = -_x_75*c_5_t - _x_76*s_5
-    _y_88 = _x_75*s_5 - _x_76*c_5_t
-    _x_79 = -_y_85*c_5_t - _y_86*s_5
-    _y_89 = _y_85*s_5 - _y_86*c_5_t
-    _x_80 = -c_5_t*d0_c_zx - d0_c_zy*s_5
-    _y_90 = d0_c_zx*s_5 - c_5_t*d0_c_zy
-    _x_81 = -_x_77*s_4 - c_4_t*d0_c_zz
-    _y_91 = d0_c_zz*s_4 - _x_77*c_4_t
-    _x_82 = -_x_78*s_4 - _x_80*c_4_t
-    _y_92 = _x_80*s_4 - _x_78*c_4_t
-    _x_83 = -_y_88*s_4 - _y_90*c_4_t
-    _y_93 = _y_90*s_4 - _y_88*c_4_t
-    _x_84 = -_x_81*c_4_t - _x_82*s_4
-    _y_94 = _x_81*s_4 - _x_82*c_4_t
-    _x_85 = -_y_91*c_4_t - _y_92*s_4
-    _y_95 = _y_91*s_4 - _y_92*c_4_t
-    _x_86 = -_x_79*s_4 - _y_87*c_4_t
-    _y_96 = _y_87*s_4 - _x_79*c_4_t
-    _x_87 = _y_89*c_3 - _x_83*s_3
-    _y_97 = _x_83*c_3 + _y_89*s_3
-    _x_88 = _x_86*c_3 - _x_84*s_3
-    _y_98 = _x_84*c_3 + _x_86*s_3
-    _x_89 = _y_96*c_3 - _y_94*s_3
-    _y_99 = _y_94*c_3 + _y_96*s_3
-    _x_90 = _x_87*c_3 - _x_88*s_3
-    _y_100 = _x_87*s_3 + _x_88*c_3
-    _x_91 = _y_97*c_3 - _y_98*s_3
-    _y_101 = _y_97*s_3 + _y_98*c_3
-    _x_92 = _y_93*c_3 - _x_85*s_3
-    _y_102 = _x_85*c_3 + _y_93*s_3
-    _x_93 = -_x_90*c_2_t - _x_91*s_2
-    _y_103 = _x_90*s_2 - _x_91*c_2_t
-    _x_94 = -_y_100*c_2_t - _y_101*s_2
-    _y_104 = _y_100*s_2 - _y_101*c_2_t
-    _x_95 = -_x_89*c_2_t - _y_99*s_2
-    _y_105 = _x_89*s_2 - _y_99*c_2_t
-    _x_96 = -_x_93*c_2_t - _x_94*s_2
-    _y_106 = _x_93*s_2 - _x_94*c_2_t
-    _x_97 = -_y_103*c_2_t - _y_104*s_2
-    _y_107 = _y_103*s_2 - _y_104*c_2_t
-    _x_98 = -_x_92*c_2_t - _y_102*s_2
-    _y_108 = _x_92*s_2 - _y_102*c_2_t
-    _x_99 = -_x_95*s_1 - _y_95*c_1_t
-    _y_109 = _y_95*s_1 - _x_95*c_1_t
-    _x_100 = -_x_96*s_1 - _x_98*c_1_t
-    _y_110 = _x_98*s_1 - _x_96*c_1_t
-    _x_101 = -_y_106*s_1 - _y_108*c_1_t
-    _y_111 = _y_108*s_1 - _y_106*c_1_t
-    _x_102 = -_x_100*s_1 - _x_99*c_1_t
-    _y_112 = _x_99*s_1 - _x_100*c_1_t
-    _x_103 = -_y_109*c_1_t - _y_110*s_1
-    _y_113 = _y_109*s_1 - _y_110*c_1_t
-    _x_104 = -_x_97*s_1 - _y_105*c_1_t
-    _y_114 = _y_105*s_1 - _x_97*c_1_t
-    _x_105 = (
-    _x_102*rrrrrr_base_frame_xy + _x_103*rrrrrr_base_frame_xz + _x_104*rrrrrr_base_frame_xx
+    # (rrrrrr-N131) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d0_c_in_base_x = (
+    axis_x_rrrrrr_axes5_x*d0_c_xx + axis_y_rrrrrr_axes5_in_base_x*d0_c_yx +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_zx
     )
-    _y_115 = (
-    _x_102*rrrrrr_base_frame_yy + _x_103*rrrrrr_base_frame_yz + _x_104*rrrrrr_base_frame_yx
+    d0_c_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d0_c_xx + axis_y_rrrrrr_axes5_in_base_y*d0_c_yx +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_zx
     )
-    _z = _x_102*rrrrrr_base_frame_zy + _x_103*rrrrrr_base_frame_zz + _x_104*rrrrrr_base_frame_zx
-    _x_106 = (
-    _y_112*rrrrrr_base_frame_xy + _y_113*rrrrrr_base_frame_xz + _y_114*rrrrrr_base_frame_xx
+    d0_c_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d0_c_xx + axis_y_rrrrrr_axes5_in_base_z*d0_c_yx +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_zx
     )
-    _y_116 = (
-    _y_112*rrrrrr_base_frame_yy + _y_113*rrrrrr_base_frame_yz + _y_114*rrrrrr_base_frame_yx
+    d0_c_in_base_x_2 = (
+    axis_x_rrrrrr_axes5_x*d0_c_xy + axis_y_rrrrrr_axes5_in_base_x*d0_c_yy +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_zy
     )
-    _z_2 = _y_112*rrrrrr_base_frame_zy + _y_113*rrrrrr_base_frame_zz + _y_114*rrrrrr_base_frame_zx
-    _x_107 = (
-    _x_101*rrrrrr_base_frame_xy + _y_107*rrrrrr_base_frame_xx + _y_111*rrrrrr_base_frame_xz
+    d0_c_in_base_y_2 = (
+    axis_x_rrrrrr_axes5_y*d0_c_xy + axis_y_rrrrrr_axes5_in_base_y*d0_c_yy +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_zy
     )
-    _y_117 = (
-    _x_101*rrrrrr_base_frame_yy + _y_107*rrrrrr_base_frame_yx + _y_111*rrrrrr_base_frame_yz
+    d0_c_in_base_z_2 = (
+    axis_x_rrrrrr_axes5_z*d0_c_xy + axis_y_rrrrrr_axes5_in_base_z*d0_c_yy +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_zy
     )
-    _z_3 = _x_101*rrrrrr_base_frame_zy + _y_107*rrrrrr_base_frame_zx + _y_111*rrrrrr_base_frame_zz
-    _y_118 = (
-    _x_105*rrrrrr_base_frame_yy + _x_106*rrrrrr_base_frame_yz + _x_107*rrrrrr_base_frame_yx
+    d0_c_in_base_x_3 = (
+    axis_x_rrrrrr_axes5_x*d0_c_xz + axis_y_rrrrrr_axes5_in_base_x*d0_c_yz +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_zz
     )
-    _z_4 = _x_105*rrrrrr_base_frame_zy + _x_106*rrrrrr_base_frame_zz + _x_107*rrrrrr_base_frame_zx
-    _x_108 = (
-    _y_115*rrrrrr_base_frame_xy + _y_116*rrrrrr_base_frame_xz + _y_117*rrrrrr_base_frame_xx
+    d0_c_in_base_y_3 = (
+    axis_x_rrrrrr_axes5_y*d0_c_xz + axis_y_rrrrrr_axes5_in_base_y*d0_c_yz +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_zz
     )
-    _y_119 = (
-    _y_115*rrrrrr_base_frame_yy + _y_116*rrrrrr_base_frame_yz + _y_117*rrrrrr_base_frame_yx
+    d0_c_in_base_z_3 = (
+    axis_x_rrrrrr_axes5_z*d0_c_xz + axis_y_rrrrrr_axes5_in_base_z*d0_c_yz +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_zz
     )
-    _z_5 = _y_115*rrrrrr_base_frame_zy + _y_116*rrrrrr_base_frame_zz + _y_117*rrrrrr_base_frame_zx
-    _x_109 = _z*rrrrrr_base_frame_xy + _z_2*rrrrrr_base_frame_xz + _z_3*rrrrrr_base_frame_xx
-    _y_120 = _z*rrrrrr_base_frame_yy + _z_2*rrrrrr_base_frame_yz + _z_3*rrrrrr_base_frame_yx
-    _z_6 = _z*rrrrrr_base_frame_zy + _z_2*rrrrrr_base_frame_zz + _z_3*rrrrrr_base_frame_zx
+    d0_c_in_base_y_4 = (
+    axis_x_rrrrrr_axes5_y*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_x_2 +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_x_3
+    )
+    d0_c_in_base_z_4 = (
+    axis_x_rrrrrr_axes5_z*d0_c_in_base_x + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_x_2 +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_x_3
+    )
+    d0_c_in_base_x_4 = (
+    axis_x_rrrrrr_axes5_x*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_y_2 +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_y_3
+    )
+    d0_c_in_base_y_5 = (
+    axis_x_rrrrrr_axes5_y*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_y_2 +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_y_3
+    )
+    d0_c_in_base_z_5 = (
+    axis_x_rrrrrr_axes5_z*d0_c_in_base_y + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_y_2 +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_y_3
+    )
+    d0_c_in_base_x_5 = (
+    axis_x_rrrrrr_axes5_x*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_z_2 +
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_z_3
+    )
+    d0_c_in_base_y_6 = (
+    axis_x_rrrrrr_axes5_y*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_y*d0_c_in_base_z_2 +
+        axis_z_rrrrrr_axes5_in_base_y*d0_c_in_base_z_3
+    )
+    d0_c_in_base_z_6 = (
+    axis_x_rrrrrr_axes5_z*d0_c_in_base_z + axis_y_rrrrrr_axes5_in_base_z*d0_c_in_base_z_2 +
+        axis_z_rrrrrr_axes5_in_base_z*d0_c_in_base_z_3
+    )
     # (M2) coupling block of M
     M_ta_t_12 = (
-    M_ta_t - M_ta_t_2 - _x_105*rrrrrr_base_frame_xy - _x_106*rrrrrr_base_frame_xz -
-        _x_107*rrrrrr_base_frame_xx
+    M_ta_t - M_ta_t_2 - axis_x_rrrrrr_axes5_x*d0_c_in_base_x -
+        axis_y_rrrrrr_axes5_in_base_x*d0_c_in_base_x_2 -
+        axis_z_rrrrrr_axes5_in_base_x*d0_c_in_base_x_3
     )
-    M_ta_t_13 = M_ta_t_3 + _y_118
-    M_ta_t_14 = M_ta_t_4 - _z_4
-    M_ta_t_15 = M_ta_t_5 - _x_108
-    M_ta_t_16 = M_ta_t_7 + _y_119
-    M_ta_t_17 = M_ta_t_8 - _z_5
-    M_ta_t_18 = M_ta_t_9 - _x_109
-    M_ta_t_19 = M_ta_t_10 + _y_120
-    M_ta_t_20 = M_ta_t_11 - _z_6
-    # (rrrrrr-N118) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d0_G_m_xx = (
-    d0_Gamma_1_r6_x*o_1_t + d0_Gamma_3_r3_x*o_3_t + d0_Gamma_4_r1_x*o_4_t + d0_mu_5_zx*o_5_t -
-        d0_Gamma_2_r4_x*o_2_t
+    M_ta_t_13 = M_ta_t_3 + d0_c_in_base_y_4
+    M_ta_t_14 = M_ta_t_4 - d0_c_in_base_z_4
+    M_ta_t_15 = M_ta_t_5 - d0_c_in_base_x_4
+    M_ta_t_16 = M_ta_t_7 + d0_c_in_base_y_5
+    M_ta_t_17 = M_ta_t_8 - d0_c_in_base_z_5
+    M_ta_t_18 = M_ta_t_9 - d0_c_in_base_x_5
+    M_ta_t_19 = M_ta_t_10 + d0_c_in_base_y_6
+    M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_6
+    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_x = (
+    d0_Gamma_2_x*w_2_t_5 + d0_Gamma_3_x*w_3_t_4 + d0_Gamma_4_x*w_4_t_7 - d0_Gamma_1_x*w_1_t_93 -
+        d0_Gamma_5_x*w_5_t_8
     )
-    d0_G_m_xy = (
-    d0_Gamma_1_r6_y*o_1_t + d0_Gamma_3_r3_y*o_3_t + d0_Gamma_4_r1_y*o_4_t + d0_mu_5_zy*o_5_t -
-        d0_Gamma_2_r4_y*o_2_t
+    d0_G_m1_y = (
+    d0_Gamma_2_y*w_2_t_5 + d0_Gamma_3_y*w_3_t_4 + d0_Gamma_4_y*w_4_t_7 - d0_Gamma_1_y*w_1_t_93 -
+        d0_Gamma_5_y*w_5_t_8
     )
-    d0_G_m_xz = (
-    d0_Gamma_1_r4_x*o_1_t + d0_Gamma_3_r1_x*o_3_t + d0_N_4_zx*o_4_t + d0_mu_5_zz*o_5_t -
-        d0_Gamma_2_r2_x*o_2_t
+    d0_G_m1_z = (
+    d0_Gamma_2_z*w_2_t_5 + d0_Gamma_3_z*w_3_t_4 + d0_Gamma_4_z*w_4_t_7 - d0_Gamma_1_z*w_1_t_93 -
+        d0_Gamma_5_z*w_5_t_8
     )
-    d0_G_m_yx = (
-    d0_Gamma_1_r6_x*o_1_y + d0_Gamma_2_r4_x*o_2_y + d0_Gamma_3_r3_x*o_3_y + d0_Gamma_4_r1_x*o_4_y
-        + d0_mu_5_zx*o_5_y
+    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d0_G_m2_x = (
+    d0_Gamma_2_x*w_2_t_6 + d0_Gamma_3_x*w_3_t_5 + d0_Gamma_4_x*w_4_t_8 - d0_Gamma_1_x*w_1_t_94 -
+        d0_Gamma_5_x*w_5_t_9
     )
-    d0_G_m_yy = (
-    d0_Gamma_1_r6_y*o_1_y + d0_Gamma_2_r4_y*o_2_y + d0_Gamma_3_r3_y*o_3_y + d0_Gamma_4_r1_y*o_4_y
-        + d0_mu_5_zy*o_5_y
+    d0_G_m2_y = (
+    d0_Gamma_2_y*w_2_t_6 + d0_Gamma_3_y*w_3_t_5 + d0_Gamma_4_y*w_4_t_8 - d0_Gamma_1_y*w_1_t_94 -
+        d0_Gamma_5_y*w_5_t_9
     )
-    d0_G_m_yz = (
-    d0_Gamma_1_r4_x*o_1_y + d0_Gamma_2_r2_x*o_2_y + d0_Gamma_3_r1_x*o_3_y + d0_N_4_zx*o_4_y +
-        d0_mu_5_zz*o_5_y
+    d0_G_m2_z = (
+    d0_Gamma_2_z*w_2_t_6 + d0_Gamma_3_z*w_3_t_5 + d0_Gamma_4_z*w_4_t_8 - d0_Gamma_1_z*w_1_t_94 -
+        d0_Gamma_5_z*w_5_t_9
     )
-    d0_G_m_zx = (
-    d0_Gamma_1_r6_x*o_1_t_2 + d0_Gamma_3_r3_x*o_3_t_2 + d0_Gamma_4_r1_x*o_4_t_2 +
-        d0_mu_5_zx*o_5_t_2 - d0_Gamma_2_r4_x*o_2_t_2
+    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_x = (
+    d_Gamma_2_x*w_2_t_5 + d_Gamma_3_x*w_3_t_4 + d_Gamma_4_x*w_4_t_7 - d_Gamma_1_x*w_1_t_93 -
+        d_Gamma_5_x*w_5_t_8
     )
-    d0_G_m_zy = (
-    d0_Gamma_1_r6_y*o_1_t_2 + d0_Gamma_3_r3_y*o_3_t_2 + d0_Gamma_4_r1_y*o_4_t_2 +
-        d0_mu_5_zy*o_5_t_2 - d0_Gamma_2_r4_y*o_2_t_2
+    d_G_m1_y = (
+    d_Gamma_2_y*w_2_t_5 + d_Gamma_3_y*w_3_t_4 + d_Gamma_4_y*w_4_t_7 - d_Gamma_1_y*w_1_t_93 -
+        d_Gamma_5_y*w_5_t_8
     )
-    d0_G_m_zz = (
-    d0_Gamma_1_r4_x*o_1_t_2 + d0_Gamma_3_r1_x*o_3_t_2 + d0_N_4_zx*o_4_t_2 + d0_mu_5_zz*o_5_t_2 -
-        d0_Gamma_2_r2_x*o_2_t_2
+    d_G_m1_z = (
+    d_Gamma_2_z*w_2_t_5 + d_Gamma_3_z*w_3_t_4 + d_Gamma_4_z*w_4_t_7 - d_Gamma_1_z*w_1_t_93 -
+        d_Gamma_5_t_6*w_5_t_8
     )
-    # (rrrrrr-N119) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_m_xx = (
-    d_Gamma_1_r6_x*o_1_t + d_Gamma_3_r3_x*o_3_t + d_Gamma_4_r1_x*o_4_t + d_mu_5_zx*o_5_t -
-        d_Gamma_2_r4_x*o_2_t
+    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d_G_m2_x = (
+    d_Gamma_2_x*w_2_t_6 + d_Gamma_3_x*w_3_t_5 + d_Gamma_4_x*w_4_t_8 - d_Gamma_1_x*w_1_t_94 -
+        d_Gamma_5_x*w_5_t_9
     )
-    d_G_m_xy = (
-    d_Gamma_1_r6_y*o_1_t + d_Gamma_3_r3_y*o_3_t + d_Gamma_4_r1_y*o_4_t + d_mu_5_zy*o_5_t -
-        d_Gamma_2_r4_y*o_2_t
+    d_G_m2_y = (
+    d_Gamma_2_y*w_2_t_6 + d_Gamma_3_y*w_3_t_5 + d_Gamma_4_y*w_4_t_8 - d_Gamma_1_y*w_1_t_94 -
+        d_Gamma_5_y*w_5_t_9
     )
-    d_G_m_xz = (
-    d_Gamma_1_r4_x*o_1_t + d_Gamma_3_r1_x*o_3_t + d_N_4_zx*o_4_t + d_mu_5_t_3*o_5_t -
-        d_Gamma_2_r2_x*o_2_t
+    d_G_m2_z = (
+    d_Gamma_2_z*w_2_t_6 + d_Gamma_3_z*w_3_t_5 + d_Gamma_4_z*w_4_t_8 - d_Gamma_1_z*w_1_t_94 -
+        d_Gamma_5_t_6*w_5_t_9
     )
-    d_G_m_yx = (
-    d_Gamma_1_r6_x*o_1_y + d_Gamma_2_r4_x*o_2_y + d_Gamma_3_r3_x*o_3_y + d_Gamma_4_r1_x*o_4_y +
-        d_mu_5_zx*o_5_y
+    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+    n_m1_in_base_x = axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y
+    n_m1_in_base_y = axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y
+    n_m1_in_base_z = axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y
+    # (rrrrrr-N120) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_in_base_x = (
+    axis_x_rrrrrr_axes5_x*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_x*d_G_m1_z
     )
-    d_G_m_yy = (
-    d_Gamma_1_r6_y*o_1_y + d_Gamma_2_r4_y*o_2_y + d_Gamma_3_r3_y*o_3_y + d_Gamma_4_r1_y*o_4_y +
-        d_mu_5_zy*o_5_y
+    d_G_m1_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_y*d_G_m1_z
     )
-    d_G_m_yz = (
-    d_Gamma_1_r4_x*o_1_y + d_Gamma_2_r2_x*o_2_y + d_Gamma_3_r1_x*o_3_y + d_N_4_zx*o_4_y +
-        d_mu_5_t_3*o_5_y
+    d_G_m1_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_z*d_G_m1_z
     )
-    d_G_m_zx = (
-    d_Gamma_1_r6_x*o_1_t_2 + d_Gamma_3_r3_x*o_3_t_2 + d_Gamma_4_r1_x*o_4_t_2 + d_mu_5_zx*o_5_t_2 -
-        d_Gamma_2_r4_x*o_2_t_2
+    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
+    n_m2_in_base_x = (
+    axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x
     )
-    d_G_m_zy = (
-    d_Gamma_1_r6_y*o_1_t_2 + d_Gamma_3_r3_y*o_3_t_2 + d_Gamma_4_r1_y*o_4_t_2 + d_mu_5_zy*o_5_t_2 -
-        d_Gamma_2_r4_y*o_2_t_2
+    n_m2_in_base_y = (
+    axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x
     )
-    d_G_m_zz = (
-    d_Gamma_1_r4_x*o_1_t_2 + d_Gamma_3_r1_x*o_3_t_2 + d_N_4_zx*o_4_t_2 + d_mu_5_t_3*o_5_t_2 -
-        d_Gamma_2_r2_x*o_2_t_2
+    n_m2_in_base_z = (
+    axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y - axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x
     )
-    # (rrrrrr-N128) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_110 = c_5_t*d_G_m_xx + d_G_m_yx*s_5
-    _y_121 = c_5_t*d_G_m_yx - d_G_m_xx*s_5
-    _x_111 = c_5_t*d_G_m_xy + d_G_m_yy*s_5
-    _y_122 = c_5_t*d_G_m_yy - d_G_m_xy*s_5
-    _x_112 = c_5_t*d_G_m_xz + d_G_m_yz*s_5
-    _y_123 = c_5_t*d_G_m_yz - d_G_m_xz*s_5
-    _x_113 = -_x_110*c_5_t - _x_111*s_5
-    _y_124 = _x_110*s_5 - _x_111*c_5_t
-    _x_114 = -_y_121*c_5_t - _y_122*s_5
-    _y_125 = _y_121*s_5 - _y_122*c_5_t
-    _x_115 = c_5_t*d_G_m_zx + d_G_m_zy*s_5
-    _y_126 = c_5_t*d_G_m_zy - d_G_m_zx*s_5
-    _x_116 = c_4_t*d_G_m_zz - _x_112*s_4
-    _y_127 = -_x_112*c_4_t - d_G_m_zz*s_4
-    _x_117 = -_x_113*s_4 - _x_115*c_4_t
-    _y_128 = _x_115*s_4 - _x_113*c_4_t
-    _x_118 = -_y_124*s_4 - _y_126*c_4_t
-    _y_129 = _y_126*s_4 - _y_124*c_4_t
-    _x_119 = -_x_116*c_4_t - _x_117*s_4
-    _y_130 = _x_116*s_4 - _x_117*c_4_t
-    _x_120 = -_y_127*c_4_t - _y_128*s_4
-    _y_131 = _y_127*s_4 - _y_128*c_4_t
-    _x_121 = -_x_114*s_4 - _y_123*c_4_t
-    _y_132 = _y_123*s_4 - _x_114*c_4_t
-    _x_122 = _y_125*c_3 - _x_118*s_3
-    _y_133 = _x_118*c_3 + _y_125*s_3
-    _x_123 = _x_121*c_3 - _x_119*s_3
-    _y_134 = _x_119*c_3 + _x_121*s_3
-    _x_124 = _y_132*c_3 - _y_130*s_3
-    _y_135 = _y_130*c_3 + _y_132*s_3
-    _x_125 = _x_122*c_3 - _x_123*s_3
-    _y_136 = _x_122*s_3 + _x_123*c_3
-    _x_126 = _y_133*c_3 - _y_134*s_3
-    _y_137 = _y_133*s_3 + _y_134*c_3
-    _x_127 = _y_129*c_3 - _x_120*s_3
-    _y_138 = _x_120*c_3 + _y_129*s_3
-    _x_128 = -_x_125*c_2_t - _x_126*s_2
-    _y_139 = _x_125*s_2 - _x_126*c_2_t
-    _x_129 = -_y_136*c_2_t - _y_137*s_2
-    _y_140 = _y_136*s_2 - _y_137*c_2_t
-    _x_130 = -_x_124*c_2_t - _y_135*s_2
-    _y_141 = _x_124*s_2 - _y_135*c_2_t
-    _x_131 = -_x_128*c_2_t - _x_129*s_2
-    _y_142 = _x_128*s_2 - _x_129*c_2_t
-    _x_132 = -_y_139*c_2_t - _y_140*s_2
-    _y_143 = _y_139*s_2 - _y_140*c_2_t
-    _x_133 = -_x_127*c_2_t - _y_138*s_2
-    _y_144 = _x_127*s_2 - _y_138*c_2_t
-    _x_134 = -_x_130*s_1 - _y_131*c_1_t
-    _y_145 = _y_131*s_1 - _x_130*c_1_t
-    _x_135 = -_x_131*s_1 - _x_133*c_1_t
-    _y_146 = _x_133*s_1 - _x_131*c_1_t
-    _x_136 = -_y_142*s_1 - _y_144*c_1_t
-    _y_147 = _y_144*s_1 - _y_142*c_1_t
-    _x_137 = -_x_134*c_1_t - _x_135*s_1
-    _y_148 = _x_134*s_1 - _x_135*c_1_t
-    _x_138 = -_y_145*c_1_t - _y_146*s_1
-    _y_149 = _y_145*s_1 - _y_146*c_1_t
-    _x_139 = -_x_132*s_1 - _y_141*c_1_t
-    _y_150 = _y_141*s_1 - _x_132*c_1_t
-    _x_140 = (
-    _x_137*rrrrrr_base_frame_xy + _x_138*rrrrrr_base_frame_xz + _x_139*rrrrrr_base_frame_xx
+    # (rrrrrr-N124) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d_G_m2_in_base_x = (
+    axis_x_rrrrrr_axes5_x*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_x*d_G_m2_z
     )
-    _y_151 = (
-    _x_137*rrrrrr_base_frame_yy + _x_138*rrrrrr_base_frame_yz + _x_139*rrrrrr_base_frame_yx
+    d_G_m2_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_y*d_G_m2_z
     )
-    _z_7 = _x_137*rrrrrr_base_frame_zy + _x_138*rrrrrr_base_frame_zz + _x_139*rrrrrr_base_frame_zx
-    _x_141 = (
-    _y_148*rrrrrr_base_frame_xy + _y_149*rrrrrr_base_frame_xz + _y_150*rrrrrr_base_frame_xx
+    d_G_m2_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_z*d_G_m2_z
     )
-    _y_152 = (
-    _y_148*rrrrrr_base_frame_yy + _y_149*rrrrrr_base_frame_yz + _y_150*rrrrrr_base_frame_yx
+    # (rrrrrr-N128) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x + d_G_m2_in_base_x*n_m2_in_base_x
+    d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x + d_G_m2_in_base_y*n_m2_in_base_x
+    d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x + d_G_m2_in_base_z*n_m2_in_base_x
+    d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y + d_G_m2_in_base_x*n_m2_in_base_y
+    # (rrrrrr-N119) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_y*d0_G_m1_z
     )
-    _z_8 = _y_148*rrrrrr_base_frame_zy + _y_149*rrrrrr_base_frame_zz + _y_150*rrrrrr_base_frame_zx
-    _x_142 = (
-    _x_136*rrrrrr_base_frame_xy + _y_143*rrrrrr_base_frame_xx + _y_147*rrrrrr_base_frame_xz
+    d0_G_m1_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m1_y +
+        axis_z_rrrrrr_axes5_in_base_z*d0_G_m1_z
     )
-    _y_153 = (
-    _x_136*rrrrrr_base_frame_yy + _y_143*rrrrrr_base_frame_yx + _y_147*rrrrrr_base_frame_yz
+    # (rrrrrr-N123) coefficient of the acceleration in: moment along moment direction 2 that balances the leg's inertia and weight along all freedoms
+    d0_G_m2_in_base_y = (
+    axis_x_rrrrrr_axes5_y*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_y*d0_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_y*d0_G_m2_z
     )
-    _z_9 = _x_136*rrrrrr_base_frame_zy + _y_143*rrrrrr_base_frame_zx + _y_147*rrrrrr_base_frame_zz
-    _x_143 = (
-    _x_140*rrrrrr_base_frame_xy + _x_141*rrrrrr_base_frame_xz + _x_142*rrrrrr_base_frame_xx
-    )
-    _y_154 = (
-    _x_140*rrrrrr_base_frame_yy + _x_141*rrrrrr_base_frame_yz + _x_142*rrrrrr_base_frame_yx
-    )
-    _z_10 = (
-    _x_140*rrrrrr_base_frame_zy + _x_141*rrrrrr_base_frame_zz + _x_142*rrrrrr_base_frame_zx
-    )
-    _x_144 = (
-    _y_151*rrrrrr_base_frame_xy + _y_152*rrrrrr_base_frame_xz + _y_153*rrrrrr_base_frame_xx
-    )
-    # (rrrrrr-N127) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_145 = c_5_t*d0_G_m_xx + d0_G_m_yx*s_5
-    _y_155 = c_5_t*d0_G_m_yx - d0_G_m_xx*s_5
-    _x_146 = c_5_t*d0_G_m_xy + d0_G_m_yy*s_5
-    _y_156 = c_5_t*d0_G_m_yy - d0_G_m_xy*s_5
-    _x_147 = c_5_t*d0_G_m_xz + d0_G_m_yz*s_5
-    _y_157 = c_5_t*d0_G_m_yz - d0_G_m_xz*s_5
-    _x_148 = -_x_145*c_5_t - _x_146*s_5
-    _y_158 = _x_145*s_5 - _x_146*c_5_t
-    _x_149 = -_y_155*c_5_t - _y_156*s_5
-    _y_159 = _y_155*s_5 - _y_156*c_5_t
-    _x_150 = c_5_t*d0_G_m_zx + d0_G_m_zy*s_5
-    _y_160 = c_5_t*d0_G_m_zy - d0_G_m_zx*s_5
-    _x_151 = c_4_t*d0_G_m_zz - _x_147*s_4
-    _y_161 = -_x_147*c_4_t - d0_G_m_zz*s_4
-    _x_152 = -_x_148*s_4 - _x_150*c_4_t
-    _y_162 = _x_150*s_4 - _x_148*c_4_t
-    _x_153 = -_y_158*s_4 - _y_160*c_4_t
-    _y_163 = _y_160*s_4 - _y_158*c_4_t
-    _x_154 = -_x_151*c_4_t - _x_152*s_4
-    _y_164 = _x_151*s_4 - _x_152*c_4_t
-    _x_155 = -_y_161*c_4_t - _y_162*s_4
-    _y_165 = _y_161*s_4 - _y_162*c_4_t
-    _x_156 = -_x_149*s_4 - _y_157*c_4_t
-    _y_166 = _y_157*s_4 - _x_149*c_4_t
-    _x_157 = _y_159*c_3 - _x_153*s_3
-    _y_167 = _x_153*c_3 + _y_159*s_3
-    _x_158 = _x_156*c_3 - _x_154*s_3
-    _y_168 = _x_154*c_3 + _x_156*s_3
-    _x_159 = _y_166*c_3 - _y_164*s_3
-    _y_169 = _y_164*c_3 + _y_166*s_3
-    _x_160 = _x_157*c_3 - _x_158*s_3
-    _y_170 = _x_157*s_3 + _x_158*c_3
-    _x_161 = _y_167*c_3 - _y_168*s_3
-    _y_171 = _y_167*s_3 + _y_168*c_3
-    _x_162 = _y_163*c_3 - _x_155*s_3
-    _y_172 = _x_155*c_3 + _y_163*s_3
-    _x_163 = -_x_160*c_2_t - _x_161*s_2
-    _y_173 = _x_160*s_2 - _x_161*c_2_t
-    _x_164 = -_y_170*c_2_t - _y_171*s_2
-    _y_174 = _y_170*s_2 - _y_171*c_2_t
-    _x_165 = -_x_159*c_2_t - _y_169*s_2
-    _y_175 = _x_159*s_2 - _y_169*c_2_t
-    _x_166 = -_x_163*c_2_t - _x_164*s_2
-    _y_176 = _x_163*s_2 - _x_164*c_2_t
-    _x_167 = -_y_173*c_2_t - _y_174*s_2
-    _y_177 = _y_173*s_2 - _y_174*c_2_t
-    _x_168 = -_x_162*c_2_t - _y_172*s_2
-    _y_178 = _x_162*s_2 - _y_172*c_2_t
-    _x_169 = -_x_165*s_1 - _y_165*c_1_t
-    _y_179 = _y_165*s_1 - _x_165*c_1_t
-    _x_170 = -_x_166*s_1 - _x_168*c_1_t
-    _y_180 = _x_168*s_1 - _x_166*c_1_t
-    _x_171 = -_y_176*s_1 - _y_178*c_1_t
-    _y_181 = _y_178*s_1 - _y_176*c_1_t
-    _x_172 = -_x_169*c_1_t - _x_170*s_1
-    _y_182 = _x_169*s_1 - _x_170*c_1_t
-    _x_173 = -_y_179*c_1_t - _y_180*s_1
-    _y_183 = _y_179*s_1 - _y_180*c_1_t
-    _x_174 = -_x_167*s_1 - _y_175*c_1_t
-    _y_184 = _y_175*s_1 - _x_167*c_1_t
-    _x_175 = (
-    _x_172*rrrrrr_base_frame_xy + _x_173*rrrrrr_base_frame_xz + _x_174*rrrrrr_base_frame_xx
-    )
-    _y_185 = (
-    _x_172*rrrrrr_base_frame_yy + _x_173*rrrrrr_base_frame_yz + _x_174*rrrrrr_base_frame_yx
-    )
-    _x_176 = (
-    _y_182*rrrrrr_base_frame_xy + _y_183*rrrrrr_base_frame_xz + _y_184*rrrrrr_base_frame_xx
-    )
-    _y_186 = (
-    _y_182*rrrrrr_base_frame_yy + _y_183*rrrrrr_base_frame_yz + _y_184*rrrrrr_base_frame_yx
-    )
-    _x_177 = (
-    _x_171*rrrrrr_base_frame_xy + _y_177*rrrrrr_base_frame_xx + _y_181*rrrrrr_base_frame_xz
-    )
-    _y_187 = (
-    _x_171*rrrrrr_base_frame_yy + _y_177*rrrrrr_base_frame_yx + _y_181*rrrrrr_base_frame_yz
-    )
-    _z_11 = (
-    rrrrrr_base_frame_zx*(_x_171*rrrrrr_base_frame_zy + _y_177*rrrrrr_base_frame_zx +
-        _y_181*rrrrrr_base_frame_zz) + rrrrrr_base_frame_zy*(_x_172*rrrrrr_base_frame_zy +
-        _x_173*rrrrrr_base_frame_zz + _x_174*rrrrrr_base_frame_zx) +
-        rrrrrr_base_frame_zz*(_y_182*rrrrrr_base_frame_zy + _y_183*rrrrrr_base_frame_zz +
-        _y_184*rrrrrr_base_frame_zx)
+    d0_G_m2_in_base_z = (
+    axis_x_rrrrrr_axes5_z*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_z*d0_G_m2_y +
+        axis_z_rrrrrr_axes5_in_base_z*d0_G_m2_z
     )
     # (M3) rotational block of M
     M_aa_t = (
-    M_ta_t_5*q_in_base_z + _x_109*q_in_base_y + _x_175*rrrrrr_base_frame_xy +
-        _x_176*rrrrrr_base_frame_xz + _x_177*rrrrrr_base_frame_xx + _z_10*q_in_base_y -
-        M_ta_t_9*q_in_base_y - _x_108*q_in_base_z - _y_154*q_in_base_z
+    M_ta_t_5*q_in_base_z + d0_c_in_base_x_5*q_in_base_y + d_G_m_xy*q_in_base_z -
+        M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_z - d_G_m_xz*q_in_base_y -
+        n_m1_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m1_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m1_y
+        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m1_z) -
+        n_m2_in_base_x*(axis_x_rrrrrr_axes5_x*d0_G_m2_x + axis_y_rrrrrr_axes5_in_base_x*d0_G_m2_y
+        + axis_z_rrrrrr_axes5_in_base_x*d0_G_m2_z)
     )
     M_aa_t_2 = (
-    M_ta_t_7*q_in_base_z + _y_119*q_in_base_z + _z_10*q_in_base_x - M_ta_t_10*q_in_base_y -
-        _x_143*q_in_base_z - _x_175*rrrrrr_base_frame_yy - _x_176*rrrrrr_base_frame_yz -
-        _x_177*rrrrrr_base_frame_yx - _y_120*q_in_base_y
+    M_ta_t_7*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_x + d0_G_m2_in_base_y*n_m2_in_base_x +
+        d0_c_in_base_y_5*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_10*q_in_base_y -
+        d0_c_in_base_y_6*q_in_base_y - d_G_m_xz*q_in_base_x
     )
     M_aa_t_3 = (
-    M_ta_t_11*q_in_base_y + _x_143*q_in_base_y + _z_5*q_in_base_z - M_ta_t_8*q_in_base_z -
-        _x_175*rrrrrr_base_frame_zy - _x_176*rrrrrr_base_frame_zz - _x_177*rrrrrr_base_frame_zx -
-        _y_154*q_in_base_x - _z_6*q_in_base_y
+    M_ta_t_11*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_x + d0_G_m2_in_base_z*n_m2_in_base_x +
+        d0_c_in_base_z_5*q_in_base_z + d_G_m_xy*q_in_base_x - M_ta_t_8*q_in_base_z -
+        d0_c_in_base_z_6*q_in_base_y - d_G_m_xx*q_in_base_y
     )
     M_aa_t_4 = (
-    M_ta_t_3*q_in_base_z + _x_144*q_in_base_z + _y_118*q_in_base_z + _y_185*rrrrrr_base_frame_yy +
-        _y_186*rrrrrr_base_frame_yz + _y_187*rrrrrr_base_frame_yx - M_ta_t_10*q_in_base_x -
-        _y_120*q_in_base_x - q_in_base_x*(_y_151*rrrrrr_base_frame_zy +
-        _y_152*rrrrrr_base_frame_zz + _y_153*rrrrrr_base_frame_zx)
+    M_ta_t_3*q_in_base_z + d0_c_in_base_y_4*q_in_base_z +
+        q_in_base_x*(d_G_m1_in_base_z*n_m1_in_base_y + d_G_m2_in_base_z*n_m2_in_base_y) -
+        M_ta_t_10*q_in_base_x - d0_G_m1_in_base_y*n_m1_in_base_y -
+        d0_G_m2_in_base_y*n_m2_in_base_y - d0_c_in_base_y_6*q_in_base_x - d_G_m_yx*q_in_base_z
     )
     M_aa_t_5 = (
-    M_ta_t_4*q_in_base_z + _x_144*q_in_base_y + _z_6*q_in_base_x - M_ta_t_11*q_in_base_x -
-        _y_185*rrrrrr_base_frame_zy - _y_186*rrrrrr_base_frame_zz - _y_187*rrrrrr_base_frame_zx -
-        _z_4*q_in_base_z - q_in_base_x*(_y_151*rrrrrr_base_frame_yy + _y_152*rrrrrr_base_frame_yz
-        + _y_153*rrrrrr_base_frame_yx)
+    M_ta_t_4*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_y + d0_G_m2_in_base_z*n_m2_in_base_y +
+        d0_c_in_base_z_6*q_in_base_x + q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_y +
+        d_G_m2_in_base_y*n_m2_in_base_y) - M_ta_t_11*q_in_base_x - d0_c_in_base_z_4*q_in_base_z -
+        d_G_m_yx*q_in_base_y
     )
     M_aa_t_6 = (
-    _z_11 + M_ta_t_4*q_in_base_y + _z_5*q_in_base_x + q_in_base_x*(_z_7*rrrrrr_base_frame_yy +
-        _z_8*rrrrrr_base_frame_yz + _z_9*rrrrrr_base_frame_yx) - M_ta_t_8*q_in_base_x -
-        _z_4*q_in_base_y - q_in_base_y*(_z_7*rrrrrr_base_frame_xy + _z_8*rrrrrr_base_frame_xz +
-        _z_9*rrrrrr_base_frame_xx)
+    M_ta_t_4*q_in_base_y + d0_c_in_base_z_5*q_in_base_x +
+        q_in_base_y*(d_G_m1_in_base_x*n_m1_in_base_z + d_G_m2_in_base_x*n_m2_in_base_z) -
+        M_ta_t_8*q_in_base_x - d0_G_m1_in_base_z*n_m1_in_base_z - d0_G_m2_in_base_z*n_m2_in_base_z
+        - d0_c_in_base_z_4*q_in_base_y - q_in_base_x*(d_G_m1_in_base_y*n_m1_in_base_z +
+        d_G_m2_in_base_y*n_m2_in_base_z)
     )
-    ok = (abs(w_1_t_24) > _TOLERANCE * w_1_t)
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
@@ -4747,7 +3760,7 @@ def _M_after(c, s, t, f):
     )
 
 
-# Z: 6363 mul, 4356 add, 12 div, 0 sqrt, 60 trig
+# Z: 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig
 def _Z_before(c, X, V, q, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
@@ -4829,6 +3842,7 @@ def _Z_before(c, X, V, q, f):
 
 
 def _Z_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     (
@@ -4843,7 +3857,7 @@ def _Z_rrrrrr(c, k, x, s, f):
         rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -4930,10 +3944,10 @@ def _Z_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -4953,9 +3967,9 @@ def _Z_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -5020,105 +4034,111 @@ def _Z_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7
-    w_1_t_12 = v_2_z*w_1_t_8 - v_3_z*w_1_t_8
-    w_1_t_13 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_14 = v_1_x*w_1_t_12 + w_1_t_13*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_15 = v_2_z*w_1_t_6 - v_3_z*w_1_t_6
-    w_1_t_16 = v_1_x*w_1_t_15 + w_1_t_13*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_17 = n_m2_t*w_1_t_16 + v_4_z*w_1_t_11 - n_m1_r0_y*w_1_t_14
-    w_1_t_18 = v_2_y*w_1_t_6 - v_3_y*w_1_t_6
-    w_1_t_19 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_20 = v_1_x*w_1_t_18 + w_1_t_19*w_1_t_5 - v_1_y*w_1_t_10
-    w_1_t_21 = v_2_y*v_3_z - v_2_z*v_3_y
-    w_1_t_22 = v_1_x*w_1_t_21 + v_1_z*w_1_t_19 - v_1_y*w_1_t_13
-    w_1_t_23 = n_m1_r0_y*w_1_t_22 + v_4_z*w_1_t_20
-    w_1_t_24 = end_p1_r8_y*w_1_t_23 + rrrrrr_platform_joint_offset_x*w_1_t_17
-    w_1_t_25 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_26 = v_2_z*w_1_t_25
-    w_1_t_27 = v_4_z*w_1_t_8
-    w_1_t_28 = w_1_t_27 + n_m2_t*v_3_z
-    w_1_t_29 = v_4_z*w_1_t_6
-    w_1_t_30 = w_1_t_29 + n_m1_r0_y*v_3_z
-    w_1_t_31 = v_1_z*w_1_t_25
-    w_1_t_32 = v_1_y*w_1_t_6
-    w_1_t_33 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_3_z - v_1_z*v_3_y) + v_4_z*(w_1_t_32 - v_3_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_31 + w_1_t_30*w_1_t_7 - w_1_t_28*w_1_t_5)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_34 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_2_z - v_1_z*v_2_y) + v_4_z*(w_1_t_32 - v_2_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_31 + w_1_t_7*(w_1_t_29 + n_m1_r0_y*v_2_z) -
-        w_1_t_5*(w_1_t_27 + n_m2_t*v_2_z))
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_35 = v_1_y*w_1_t_15 + w_1_t_21*w_1_t_5 - v_1_z*w_1_t_18
-    w_1_t_36 = v_2_y*w_1_t_8 - v_3_y*w_1_t_8
-    inv_w_1_t_113 = 1.0/w_1_t_24
-    w_1_t_37 = n_m1_r0_y*w_1_t_13 + v_4_z*w_1_t_10
-    w_1_t_38 = v_1_x*w_1_t_6
-    w_1_t_39 = w_1_t_38 - v_3_x*w_1_t_5
-    w_1_t_40 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_41 = n_m1_r0_y*w_1_t_40 + v_4_z*w_1_t_39
-    w_1_t_42 = w_1_t_38 - v_2_x*w_1_t_5
-    w_1_t_43 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_44 = n_m1_r0_y*w_1_t_43 + v_4_z*w_1_t_42
-    w_1_t_45 = end_p1_r8_y*w_1_t_19 + rrrrrr_platform_joint_offset_x*w_1_t_9
-    w_1_t_46 = v_1_x*w_1_t_8
-    w_1_t_47 = (
-    end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) + rrrrrr_platform_joint_offset_x*(w_1_t_46 -
-        v_3_x*w_1_t_7)
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_48 = (
-    end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) + rrrrrr_platform_joint_offset_x*(w_1_t_46 -
-        v_2_x*w_1_t_7)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_1_t_49 = v_1_x*w_1_t_36 + w_1_t_19*w_1_t_7 - v_1_y*w_1_t_9
-    w_1_t_50 = inv_w_1_t_113*(v_4_z*w_1_t_45 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_13)
-    w_1_t_51 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_37
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_113*(v_4_z*w_1_t_47 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_40)
-    w_2_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_41
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_113*(v_4_z*w_1_t_48 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_43)
-    w_3_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_44
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_14 - end_p1_r8_y*w_1_t_22)
-    w_4_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_16
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = inv_w_1_t_113*(n_m2_t*w_1_t_22 + v_4_z*w_1_t_49)
-    w_5_t_2 = inv_w_1_t_113*w_1_t_23
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_50
-    o_1_t_2 = end_p1_r8_y*w_1_t_51
-    o_1_y = -end_p1_r6_x*w_1_t_51 - end_p1_r8_x*w_1_t_50
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t
-    o_2_t_2 = end_p1_r8_y*w_2_t_2
-    o_2_y = end_p1_r6_x*w_2_t_2 + end_p1_r8_x*w_2_t
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t
-    o_3_t_2 = end_p1_r8_y*w_3_t_2
-    o_3_y = -end_p1_r6_x*w_3_t_2 - end_p1_r8_x*w_3_t
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t
-    o_4_t_2 = end_p1_r8_y*w_4_t_2
-    o_4_y = -end_p1_r6_x*w_4_t_2 - end_p1_r8_x*w_4_t
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t
-    o_5_t_2 = end_p1_r8_y*w_5_t_2
-    o_5_y = -end_p1_r6_x*w_5_t_2 - end_p1_r8_x*w_5_t
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
+    )
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
+    )
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    w_1_t_83 = inv_w_1_t_222*w_1_t_77
+    w_1_t_84 = inv_w_1_t_222*w_1_t_78
+    w_1_t_85 = inv_w_1_t_222*w_1_t_79
+    w_1_t_86 = inv_w_1_t_222*w_1_t_80
+    w_1_t_87 = inv_w_1_t_222*w_1_t_81
     # (M2) coupling block of M
     q_in_base_x = (
     R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
@@ -5136,13 +4156,20 @@ def _Z_rrrrrr(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_1_t + axis_y_rrrrrr_axes5_in_base_x*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_1_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_1_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_1_y + axis_z_rrrrrr_axes5_in_base_y*o_1_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_1_t + axis_y_rrrrrr_axes5_in_base_z*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_1_t_2)
+    # (rrrrrr-V33) rate at which the joints turn along moment direction 1
+    eta_1 = (
+    omega_x*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+        omega_y*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+        omega_z*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y)
+    )
+    # (rrrrrr-V34) rate at which the joints turn along moment direction 2
+    eta_2 = (
+    omega_x*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x) +
+        omega_y*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x) +
+        omega_z*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
     )
     # (rrrrrr-V1) velocity of the connection point
     S_dot_tip_x = (
@@ -5156,144 +4183,69 @@ def _Z_rrrrrr(c, k, x, s, f):
     S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_dot_z*axis_z_rrrrrr_axes5_in_base_z
     )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t_2 = end_p1_r8_y*n_m1_r0_y
-    qd_1_t_3 = end_p1_r8_y*w_1_t_6
-    qd_1_t_4 = qd_1_t_3*v_4_z
-    qd_1_t_5 = qd_1_t_4 + qd_1_t_2*v_3_z
-    qd_1_t_6 = qd_1_t_4 + qd_1_t_2*v_2_z
-    qd_1_t_7 = v_3_z*w_1_t_25 - w_1_t_26
-    qd_1_t_8 = qd_1_t_6*v_3_y + qd_1_t_7*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_2_y
-    qd_1_t_9 = end_p1_r8_y*w_1_t_5
-    qd_1_t_10 = qd_1_t_2*v_1_z + qd_1_t_9*v_4_z
-    qd_1_t_11 = n_m2_t*w_1_t_5 - n_m1_r0_y*w_1_t_7
-    qd_1_t_12 = v_4_z*(w_1_t_5*w_1_t_8 - w_1_t_6*w_1_t_7)
-    qd_1_t_13 = qd_1_t_12 + qd_1_t_11*v_3_z - w_1_t_31
-    qd_1_t_14 = qd_1_t_10*v_3_y + qd_1_t_13*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_1_y
-    qd_1_t_15 = qd_1_t_12 + qd_1_t_11*v_2_z - w_1_t_31
-    qd_1_t_16 = qd_1_t_10*v_2_y + qd_1_t_15*rrrrrr_platform_joint_offset_x - qd_1_t_6*v_1_y
-    qd_1_t_17 = qd_1_t_16*v_3_x + qd_1_t_8*v_1_x - qd_1_t_14*v_2_x
-    qd_1_t_18 = qd_1_t_5*v_2_x - qd_1_t_6*v_3_x
-    qd_1_t_19 = rrrrrr_platform_joint_offset_x*w_1_t_25
-    qd_1_t_20 = qd_1_t_2*v_3_y - qd_1_t_19
-    qd_1_t_21 = qd_1_t_19 - qd_1_t_2*v_2_y
-    qd_1_t_22 = qd_1_t_20*v_2_x + qd_1_t_21*v_3_x
-    inv_qd_1_t_44 = 1.0/qd_1_t_17
-    qd_1_t_23 = qd_1_t_5*v_1_x - qd_1_t_10*v_3_x
-    qd_1_t_24 = qd_1_t_2*v_1_y - qd_1_t_11*rrrrrr_platform_joint_offset_x
-    qd_1_t_25 = qd_1_t_20*v_1_x - qd_1_t_24*v_3_x
-    qd_1_t_26 = qd_1_t_6*v_1_x - qd_1_t_10*v_2_x
-    qd_1_t_27 = qd_1_t_21*v_1_x + qd_1_t_24*v_2_x
-    qd_1_t_28 = rrrrrr_platform_joint_offset_x*w_1_t_8
-    qd_1_t_29 = qd_1_t_28 + end_p1_r8_y*v_3_y
-    qd_1_t_30 = qd_1_t_28 + end_p1_r8_y*v_2_y
-    qd_1_t_31 = qd_1_t_29*w_1_t_6 - qd_1_t_30*w_1_t_6
-    qd_1_t_32 = w_1_t_6*(end_p1_r8_y*v_1_y + rrrrrr_platform_joint_offset_x*w_1_t_7)
-    qd_1_t_33 = qd_1_t_29*w_1_t_5 - qd_1_t_32
-    qd_1_t_34 = qd_1_t_32 - qd_1_t_30*w_1_t_5
-    qd_1_t_35 = qd_1_t_33*v_2_z + qd_1_t_34*v_3_z - qd_1_t_31*v_1_z
-    qd_1_t_36 = qd_1_t_3*v_1_z
-    qd_1_t_37 = (
-    v_1_x*(qd_1_t_3*v_2_z - qd_1_t_3*v_3_z) + v_3_x*(qd_1_t_36 - qd_1_t_9*v_2_z) -
-        v_2_x*(qd_1_t_36 - qd_1_t_9*v_3_z)
+    # (rrrrrr-V35) rate of joint 1
+    qd_1_t = eta_1*size
+    qd_1_t_2 = eta_2*size
+    qd_1_t_3 = (
+    inv_w_1_t_222*(S_dot_tip_x*w_1_t_83 + S_dot_tip_z*w_1_t_85 + qd_1_t*w_1_t_86 +
+        qd_1_t_2*w_1_t_87 - S_dot_tip_y*w_1_t_84)
     )
-    qd_1_t_38 = qd_1_t_33*v_2_x + qd_1_t_34*v_3_x - qd_1_t_31*v_1_x
-    qd_1_t_39 = qd_1_t_15*v_3_y + qd_1_t_7*v_1_y - qd_1_t_13*v_2_y
-    qd_1_t_40 = qd_1_t_15*v_3_x + qd_1_t_7*v_1_x - qd_1_t_13*v_2_x
-    qd_1_t_41 = v_1_y*w_1_t_25
-    qd_1_t_42 = (
-    v_1_x*(v_2_y*w_1_t_25 - v_3_y*w_1_t_25) + v_3_x*(qd_1_t_41 - qd_1_t_11*v_2_y) -
-        v_2_x*(qd_1_t_41 - qd_1_t_11*v_3_y)
+    qd_1_t_4 = (
+    inv_w_1_t_194*(S_dot_tip_x*w_1_t_71 + S_dot_tip_z*w_1_t_73 + qd_1_t*w_1_t_74 +
+        qd_1_t_2*w_1_t_75 - S_dot_tip_y*w_1_t_72 - qd_1_t_3*w_1_t_76)
     )
-    qd_1 = (
-    qd_1_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_8 + S_dot_tip_y*qd_1_t_18 - S_dot_tip_z*qd_1_t_22)
+    qd_1_t_5 = (
+    inv_w_1_t_150*(S_dot_tip_y*w_1_t_54 + qd_1_t_3*w_1_t_64 + qd_1_t_4*w_1_t_58 -
+        S_dot_tip_x*w_1_t_53 - S_dot_tip_z*w_1_t_55 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
     )
-    # (rrrrrr-V34) rate of joint 2
-    qd_2_t = (
-    omega_x*(axis_y_rrrrrr_axes5_in_base_x*o_2_y - axis_x_rrrrrr_axes5_x*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*o_2_t_2) + omega_y*(axis_y_rrrrrr_axes5_in_base_y*o_2_y -
-        axis_x_rrrrrr_axes5_y*o_2_t - axis_z_rrrrrr_axes5_in_base_y*o_2_t_2) +
-        omega_z*(axis_y_rrrrrr_axes5_in_base_z*o_2_y - axis_x_rrrrrr_axes5_z*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*o_2_t_2)
+    qd_1_t_6 = (
+    inv_w_1_t_101*(S_dot_tip_z*w_1_t_33 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
+        + qd_1_t_4*w_1_t_42 - S_dot_tip_y*w_1_t_32 - qd_1_t_5*w_1_t_36)
     )
-    qd_2 = (
-    qd_2_t - inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_14 + S_dot_tip_y*qd_1_t_23 - S_dot_tip_z*qd_1_t_25)
+    qd_1_t_7 = (
+    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_2*w_1_t_17 + qd_1_t_3*w_1_t_28 + qd_1_t_5*w_1_t_21
+        - qd_1_t_4*w_1_t_25 - qd_1_t_6*w_1_t_18)
     )
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2_t*qd_1
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_t = qd_1_t_5*s_2
+    omega_1_t_2 = c_2_t*qd_1_t_5
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrrrr-V35) rate of joint 3
-    qd_3_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_3_t + axis_y_rrrrrr_axes5_in_base_x*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_3_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_3_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_3_y + axis_z_rrrrrr_axes5_in_base_y*o_3_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_3_t + axis_y_rrrrrr_axes5_in_base_z*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_3_t_2)
-    )
-    qd_3 = (
-    qd_3_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_16 + S_dot_tip_y*qd_1_t_26 + S_dot_tip_z*qd_1_t_27)
-    )
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+    zeta_2_x = omega_1_t_2*qd_1_t_4
+    zeta_2_y = omega_1_t*qd_1_t_4
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_r0_x = omega_1_t_2*s_3 - c_3*omega_1_t
+    omega_2_r0_y = c_3*omega_1_t_2 + omega_1_t*s_3
     # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_3
-    zeta_3_y = omega_2_r0_x*qd_3
+    zeta_3_x = omega_2_r0_y*qd_1_t_3
+    zeta_3_y = omega_2_r0_x*qd_1_t_3
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = -c_3*zeta_2_x - s_3*zeta_2_y
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
+    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
     # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
     beta_3_x = zeta_2_r0_x + zeta_3_x
     beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_z = qd_2 + qd_3
-    # (rrrrrr-V36) rate of joint 4
-    qd_4_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_4_t + axis_y_rrrrrr_axes5_in_base_x*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_4_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_4_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_4_y + axis_z_rrrrrr_axes5_in_base_y*o_4_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_4_t + axis_y_rrrrrr_axes5_in_base_z*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_4_t_2)
-    )
-    qd_4 = (
-    qd_4_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_35 + S_dot_tip_y*qd_1_t_37 - S_dot_tip_z*qd_1_t_38)
-    )
-    # (rrrrrr-V42) angular velocity of link 3
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_z = qd_1_t_3 + qd_1_t_4
     omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
     omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
     # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_4
-    zeta_4_y = omega_3_r1_x*qd_4
+    zeta_4_x = omega_3_r1_y*qd_1_t_6
+    zeta_4_y = omega_3_r1_x*qd_1_t_6
     # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
     beta_3_t = beta_3_y*c_4_t
     beta_3_t_2 = beta_3_y*s_4
     # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
     beta_4_x = zeta_4_x - beta_3_t
     beta_4_y = -beta_3_t_2 - zeta_4_y
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_4
-    # (rrrrrr-V37) rate of joint 5
-    qd_5_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_5_t + axis_y_rrrrrr_axes5_in_base_x*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_5_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_5_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_5_y + axis_z_rrrrrr_axes5_in_base_y*o_5_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_5_t + axis_y_rrrrrr_axes5_in_base_z*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_5_t_2)
-    )
-    qd_5 = (
-    qd_5_t + inv_qd_1_t_44*(S_dot_tip_y*qd_1_t_40 + S_dot_tip_z*qd_1_t_42 - S_dot_tip_x*qd_1_t_39)
-    )
-    # (rrrrrr-V44) angular velocity of link 4
+    # (rrrrrr-V46) angular velocity of link 4
+    omega_4_z = omega_2_r0_x + qd_1_t_6
     omega_4_t = c_5_t*omega_3_r1_y
     omega_4_r1_x = omega_4_z*s_5 - omega_4_t
     omega_4_t_2 = omega_3_r1_y*s_5
     omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
     # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_5
-    zeta_5_y = omega_4_r1_x*qd_5
+    zeta_5_x = omega_4_r1_y*qd_1_t_7
+    zeta_5_y = omega_4_r1_x*qd_1_t_7
     # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
     beta_4_t = beta_3_x*s_5
     beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
@@ -5302,8 +4254,8 @@ def _Z_rrrrrr(c, k, x, s, f):
     # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
     beta_5_x = beta_4_r1_x + zeta_5_x
     beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V46) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_5
+    # (rrrrrr-V48) angular velocity of link 5
+    omega_5_z = omega_3_r1_x + qd_1_t_7
     # (rrrrrr-A14) rate of moment direction 1
     nd_m1_t = end_p1_r8_y*omega_4_r1_y
     omega_tip_x = (
@@ -5334,12 +4286,12 @@ def _Z_rrrrrr(c, k, x, s, f):
     nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
     nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
     nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V41) centripetal tensor of link 2
+    # (rrrrrr-V43) centripetal tensor of link 2
     W_2_t = omega_1_t*omega_1_t
     W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
+    W_2_t_3 = qd_1_t_4*qd_1_t_4
     W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V43) centripetal tensor of link 3
+    # (rrrrrr-V45) centripetal tensor of link 3
     W_3_t = omega_2_r0_x*omega_2_r0_x
     W_3_t_2 = omega_2_r0_y*omega_2_r0_y
     W_3_t_3 = omega_3_z*omega_3_z
@@ -5347,24 +4299,21 @@ def _Z_rrrrrr(c, k, x, s, f):
     W_3_xy = omega_2_r0_x*omega_2_r0_y
     W_3_xz = omega_2_r0_x*omega_3_z
     W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V45) centripetal tensor of link 4
+    # (rrrrrr-V47) centripetal tensor of link 4
     W_4_t = omega_3_r1_x*omega_3_r1_x
     W_4_t_2 = omega_3_r1_y*omega_3_r1_y
     W_4_t_3 = omega_4_z*omega_4_z
     W_4_xy = omega_3_r1_x*omega_3_r1_y
     W_4_xz = omega_3_r1_x*omega_4_z
     W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V47) centripetal tensor of link 5
+    # (rrrrrr-V49) centripetal tensor of link 5
     W_5_t = omega_4_r1_x*omega_4_r1_x
     W_5_t_2 = omega_4_r1_y*omega_4_r1_y
     W_5_t_3 = omega_5_z*omega_5_z
+    W_5_xx = W_5_t_2 + W_5_t_3
     W_5_xy = omega_4_r1_x*omega_4_r1_y
     W_5_xz = omega_4_r1_x*omega_5_z
     W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1
-    omega_1_y = e_1_r6_y*qd_1
-    omega_1_z = qd_1*v_1_t
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
     bias_t = rrrrrr_joint2_offset_x*s_2
     bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
@@ -5374,64 +4323,71 @@ def _Z_rrrrrr(c, k, x, s, f):
     bias_t_4 = d_2_r2_y*s_4
     d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
     d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = bias_t_3*omega_1_y - d_2_r6_y*omega_1_z
-    bias_t_6 = d_2_r6_x*omega_1_z - bias_t_3*omega_1_x
-    bias_t_7 = d_2_r6_y*omega_1_x - d_2_r6_x*omega_1_y
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_x = e_1_r6_x*qd_1_t_5
+    omega_1_y = e_1_r6_y*qd_1_t_5
+    omega_1_z = qd_1_t_5*v_1_t
+    # (rrrrrr-V41) centripetal tensor of link 1
+    W_1_t = omega_1_x*omega_1_x
+    W_1_t_2 = omega_1_y*omega_1_y
+    W_1_t_3 = omega_1_z*omega_1_z
+    W_1_xy = omega_1_x*omega_1_y
+    W_1_xz = omega_1_x*omega_1_z
+    W_1_yz = omega_1_y*omega_1_z
+    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+    bias_t_5 = c_3*rrrrrr_joint3_offset_x
+    bias_t_6 = rrrrrr_joint3_offset_x*s_3
+    bias_t_7 = bias_t_6*c_4_t
+    bias_t_8 = bias_t_6*s_4
+    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
     zeta_2_t = c_4_t*zeta_2_r0_y
     zeta_2_t_2 = s_4*zeta_2_r0_y
     zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
     zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_x = qd_1_t_4*v_2_t - omega_1_x
+    omega_2_y = qd_1_t_4*v_2_t_2 - omega_1_y
+    omega_2_z = omega_1_z + qd_1_t_4*s_4
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t_4 = omega_2_x*omega_2_x
+    W_2_t_5 = omega_2_y*omega_2_y
+    W_2_t_6 = omega_2_z*omega_2_z
+    W_2_xy_2 = omega_2_x*omega_2_y
+    W_2_xz = omega_2_x*omega_2_z
+    W_2_yz = omega_2_y*omega_2_z
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_8 = c_3*rrrrrr_joint3_offset_x
-    bias_t_9 = rrrrrr_joint3_offset_x*s_3
-    bias_t_10 = bias_t_9*c_4_t
-    bias_t_11 = bias_t_9*s_4
-    d_3_r4_x = bias_t_8*s_5 - bias_t_11*c_5_t
-    d_3_r4_y = -bias_t_11*s_5 - bias_t_8*c_5_t
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_x = omega_1_x + qd_2*v_2_t
-    omega_2_y = omega_1_y + qd_2*v_2_t_2
-    omega_2_z = qd_2*s_4 - omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_12 = bias_t_10*omega_2_y - d_3_r4_y*omega_2_z
-    bias_t_13 = d_3_r4_x*omega_2_z - bias_t_10*omega_2_x
-    bias_t_14 = d_3_r4_y*omega_2_x - d_3_r4_x*omega_2_y
-    bias_t_15 = rrrrrr_joint4_offset_x*s_5
-    bias_t_16 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V42) angular velocity of link 3
+    bias_t_9 = rrrrrr_joint4_offset_x*s_5
+    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+    # (rrrrrr-V44) angular velocity of link 3
     omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
     omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_17 = bias_t_16*omega_3_r1_x
-    bias_t_18 = bias_t_15*omega_3_r1_x
-    bias_t_19 = bias_t_15*omega_3_r3_y + bias_t_16*omega_3_r3_x
-    bias_t_20 = rrrrrr_joint5_offset_x*s_5
-    bias_t_21 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_22 = bias_t_21*omega_3_r1_x
-    bias_t_23 = bias_t_20*omega_3_r1_x
-    bias_t_24 = bias_t_20*omega_4_r1_y + bias_t_21*omega_4_r1_x
-    bias_t_25 = omega_5_z*rrrrrr_platform_joint_offset_x
-    bias_t_26 = omega_4_r1_y*rrrrrr_platform_joint_offset_x
+    bias_t_11 = rrrrrr_joint5_offset_x*s_5
+    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+    bias_t_13 = W_5_xy + beta_4_x
     bias_x = (
-    beta_4_x*bias_t_21 + bias_t_10*zeta_2_r4_y + bias_t_14*omega_2_y + bias_t_7*omega_1_y +
-        d_3_r4_y*zeta_2_t - beta_3_t*bias_t_16 - bias_t_13*omega_2_z - bias_t_18*omega_3_r1_x -
-        bias_t_19*omega_3_r3_y - bias_t_23*omega_3_r1_x - bias_t_24*omega_4_r1_y -
-        bias_t_25*omega_5_z - bias_t_26*omega_4_r1_y - bias_t_6*omega_1_z
+    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
     )
     bias_y = (
-    beta_4_x*bias_t_20 + beta_4_x*rrrrrr_platform_joint_offset_x + bias_t_12*omega_2_z +
-        bias_t_17*omega_3_r1_x + bias_t_19*omega_3_r3_x + bias_t_22*omega_3_r1_x +
-        bias_t_24*omega_4_r1_x + bias_t_26*omega_4_r1_x + bias_t_5*omega_1_z - beta_3_t*bias_t_15
-        - bias_t_10*zeta_2_r4_x - bias_t_14*omega_2_x - bias_t_7*omega_1_x - d_3_r4_x*zeta_2_t
+    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
+        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
+        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
     )
     bias_z = (
-    bias_t_13*omega_2_x + bias_t_18*omega_3_r3_x + bias_t_23*omega_4_r1_x + bias_t_25*omega_4_r1_x
-        + bias_t_5*omega_1_y + d_3_r4_y*zeta_2_r4_x - beta_4_r1_x*bias_t_21 -
-        beta_4_r1_y*bias_t_20 - beta_5_y*rrrrrr_platform_joint_offset_x - bias_t_12*omega_2_y -
-        bias_t_15*(beta_3_t_2*s_5 - beta_4_t_2) - bias_t_16*(beta_4_t + beta_3_t_2*c_5_t) -
-        bias_t_17*omega_3_r3_y - bias_t_22*omega_4_r1_y - bias_t_6*omega_1_x -
-        d_3_r4_x*zeta_2_r4_y
+    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
+        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
+        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
+        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
+        bias_t_7*(W_2_t_4 + W_2_t_5)
     )
     # (rrrrrr-A1) centripetal acceleration of the connection point
     u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z
@@ -5452,55 +4408,59 @@ def _Z_rrrrrr(c, k, x, s, f):
     rel_o_x = u_1_tip_x - bias_x
     rel_o_y = u_1_tip_y - bias_y
     rel_o_z = u_1_tip_z - bias_z
-    # (rrrrrr-A19) remainder without the acceleration in: acceleration of joint 1
-    qdd_1_o = (
-    inv_qd_1_t_44*(qd_1_t_18*rel_o_y + qd_1_t_8*rel_o_x - qd_1_t_22*rel_o_z) + nu_2*w_1_t_51 -
-        nu_1*w_1_t_50
+    # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 1
+    qdd_1_o_t = nu_1*size
+    qdd_1_o_t_2 = nu_2*size
+    qdd_1_o_t_3 = (
+    inv_w_1_t_222*(qdd_1_o_t*w_1_t_86 + qdd_1_o_t_2*w_1_t_87 + rel_o_x*w_1_t_83 + rel_o_z*w_1_t_85
+        - rel_o_y*w_1_t_84)
     )
-    # (rrrrrr-A21) remainder without the acceleration in: acceleration of joint 2
-    qdd_2_o = (
-    nu_1*w_2_t - inv_qd_1_t_44*(qd_1_t_14*rel_o_x + qd_1_t_23*rel_o_y - qd_1_t_25*rel_o_z) -
-        nu_2*w_2_t_2
+    qdd_1_o_t_4 = (
+    inv_w_1_t_194*(qdd_1_o_t*w_1_t_74 + qdd_1_o_t_2*w_1_t_75 + rel_o_x*w_1_t_71 + rel_o_z*w_1_t_73
+        - qdd_1_o_t_3*w_1_t_76 - rel_o_y*w_1_t_72)
+    )
+    qdd_1_o_t_5 = (
+    inv_w_1_t_150*(qdd_1_o_t_3*w_1_t_64 + qdd_1_o_t_4*w_1_t_58 + rel_o_y*w_1_t_54 -
+        qdd_1_o_t*w_1_t_56 - qdd_1_o_t_2*w_1_t_57 - rel_o_x*w_1_t_53 - rel_o_z*w_1_t_55)
+    )
+    qdd_1_o_t_6 = (
+    inv_w_1_t_101*(qdd_1_o_t*w_1_t_34 + qdd_1_o_t_2*w_1_t_35 + qdd_1_o_t_3*w_1_t_47 +
+        qdd_1_o_t_4*w_1_t_42 + rel_o_z*w_1_t_33 - qdd_1_o_t_5*w_1_t_36 - rel_o_y*w_1_t_32)
     )
     # (rrrrrr-A31) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2_t*qdd_1_o
-    # (rrrrrr-A37) remainder without the acceleration in: angular acceleration of link 2
-    alpha_2_o_x = alpha_1_o_t - zeta_2_x
-    alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrrrr-A39) acceleration tensor of link 2
-    B_2_o_xy = -W_2_xy - qdd_2_o
-    B_2_o_yx = qdd_2_o - W_2_xy
-    B_2_o_zx = zeta_2_y - alpha_2_o_y
-    B_2_o_zy = alpha_2_o_x - zeta_2_x
-    # (rrrrrr-A65) remainder without the acceleration in: acceleration of the origin of joint 3
+    alpha_1_o_t = qdd_1_o_t_5*s_2
+    alpha_1_o_t_2 = c_2_t*qdd_1_o_t_5
+    # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
+    alpha_2_o_x = zeta_2_x - alpha_1_o_t
+    alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
+    # (rrrrrr-A37) acceleration tensor of link 2
+    B_2_o_xy = -W_2_xy - qdd_1_o_t_4
+    B_2_o_yx = qdd_1_o_t_4 - W_2_xy
+    B_2_o_zx = -alpha_2_o_y - zeta_2_y
+    B_2_o_zy = alpha_2_o_x + zeta_2_x
+    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
     a_o3_o_t_2 = B_2_o_yx*rrrrrr_joint3_offset_x
     a_o3_o_t_3 = B_2_o_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A23) remainder without the acceleration in: acceleration of joint 3
-    qdd_3_o = (
-    inv_qd_1_t_44*(qd_1_t_16*rel_o_x + qd_1_t_26*rel_o_y + qd_1_t_27*rel_o_z) + nu_2*w_3_t_2 -
-        nu_1*w_3_t
-    )
-    # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrrrr-A39) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
-    alpha_3_o_z = qdd_2_o + qdd_3_o
-    # (rrrrrr-A45) acceleration tensor of link 3
+    alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
+    # (rrrrrr-A41) acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
     B_3_o_yz = W_3_yz - alpha_3_o_x
     B_3_o_zx = W_3_xz - alpha_3_o_y
     B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrrrr-A65) remainder without the acceleration in: acceleration of the origin of joint 3
+    # (rrrrrr-A55) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_o_r0_x = a_o3_o_t_2*s_3 - a_o3_o_t*c_3
     a_o3_o_r0_y = a_o3_o_t*s_3 + a_o3_o_t_2*c_3
-    # (rrrrrr-A69) remainder without the acceleration in: acceleration of the origin of joint 4
+    # (rrrrrr-A57) remainder without the acceleration in: acceleration of the origin of joint 4
     a_o4_o_x = a_o3_o_r0_x - W_3_xx*rrrrrr_joint4_offset_x
     a_o4_o_y = a_o3_o_r0_y + B_3_o_yx*rrrrrr_joint4_offset_x
     a_o4_o_z = a_o3_o_t_3 + B_3_o_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
     g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
@@ -5512,23 +4472,18 @@ def _Z_rrrrrr(c, k, x, s, f):
     acc_4_o_x = a_o4_o_z*s_4 - g_r6_x - a_o4_o_y*c_4_t
     acc_4_o_y = -g_r6_y - a_o4_o_y*s_4 - a_o4_o_z*c_4_t
     acc_4_o_z = a_o4_o_x - g_r4_x
-    # (rrrrrr-A25) remainder without the acceleration in: acceleration of joint 4
-    qdd_4_o = (
-    inv_qd_1_t_44*(qd_1_t_35*rel_o_x + qd_1_t_37*rel_o_y - qd_1_t_38*rel_o_z) + nu_2*w_4_t_2 -
-        nu_1*w_4_t
-    )
-    # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 4
+    # (rrrrrr-A43) remainder without the acceleration in: angular acceleration of link 4
     alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
     alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
-    alpha_4_o_z = alpha_3_o_x + qdd_4_o
-    # (rrrrrr-A51) acceleration tensor of link 4
+    alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
+    # (rrrrrr-A45) acceleration tensor of link 4
     B_4_o_xy = W_4_xy - alpha_4_o_z
     B_4_o_xz = W_4_xz + alpha_4_o_y
     B_4_o_yx = W_4_xy + alpha_4_o_z
     B_4_o_yz = W_4_yz - alpha_4_o_x
     B_4_o_zx = W_4_xz - alpha_4_o_y
     B_4_o_zy = W_4_yz + alpha_4_o_x
-    # (rrrrrr-N54) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrrr-N73) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
     mu_4_o_x = (
     B_4_o_yx*J_4_xz + B_4_o_zx*J_4_yz + B_4_o_zy*Sigma_4_yy - B_4_o_yz*Sigma_4_zz -
         J_4_xy*(W_4_t_2 - W_4_t_3) - acc_4_o_y*h_4_x - acc_4_o_z*h_4_y
@@ -5541,27 +4496,25 @@ def _Z_rrrrrr(c, k, x, s, f):
     B_4_o_yx*Sigma_4_xx + acc_4_o_x*h_4_y + acc_4_o_y*h_4_z - B_4_o_xy*Sigma_4_yy -
         B_4_o_xz*J_4_xy - B_4_o_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
     )
-    # (rrrrrr-N34) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
+    # (rrrrrr-N22) remainder without the acceleration in: acceleration of the reference point of link 5, less gravity
     acc_5_o_x = u_1_tip_x + c_5_t*g_r6_y - g_r4_x*s_5
     acc_5_o_y = u_1_tip_y + c_5_t*g_r4_x + g_r6_y*s_5
     acc_5_o_z = u_1_tip_z - g_r6_x
-    # (rrrrrr-A27) remainder without the acceleration in: acceleration of joint 5
-    qdd_5_o = (
-    inv_qd_1_t_44*(qd_1_t_40*rel_o_y + qd_1_t_42*rel_o_z - qd_1_t_39*rel_o_x) + nu_2*w_5_t_2 -
-        nu_1*w_5_t
-    )
-    # (rrrrrr-A55) remainder without the acceleration in: angular acceleration of link 5
+    # (rrrrrr-A49) remainder without the acceleration in: angular acceleration of link 5
     alpha_5_o_x = zeta_5_x + alpha_4_o_z*s_5 - alpha_4_o_y*c_5_t
     alpha_5_o_y = -zeta_5_y - alpha_4_o_y*s_5 - alpha_4_o_z*c_5_t
-    alpha_5_o_z = alpha_4_o_x + qdd_5_o
-    # (rrrrrr-A57) acceleration tensor of link 5
+    alpha_5_o_z = (
+    alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21
+        + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
+    )
+    # (rrrrrr-A51) acceleration tensor of link 5
     B_5_o_xy = W_5_xy - alpha_5_o_z
     B_5_o_xz = W_5_xz + alpha_5_o_y
     B_5_o_yx = W_5_xy + alpha_5_o_z
     B_5_o_yz = W_5_yz - alpha_5_o_x
     B_5_o_zx = W_5_xz - alpha_5_o_y
     B_5_o_zy = W_5_yz + alpha_5_o_x
-    # (rrrrrr-N44) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
+    # (rrrrrr-N65) remainder without the acceleration in: inertia moment of the links that turn with link 5, about their reference points
     mu_5_o_x = (
     B_5_o_yx*J_5_xz + B_5_o_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_o_z*h_5_y -
         B_5_o_yz*Sigma_5_zz - B_5_o_zx*J_5_xy - acc_5_o_y*h_5_z
@@ -5574,11 +4527,11 @@ def _Z_rrrrrr(c, k, x, s, f):
     B_5_o_xz*J_5_yz + B_5_o_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_o_y*h_5_x -
         B_5_o_xy*Sigma_5_yy - B_5_o_yz*J_5_xz - acc_5_o_x*h_5_y
     )
-    # (rrrrrr-N58) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+    # (rrrrrr-N75) remainder without the acceleration in: moment about joint 4 of the links from 4 outwards, the force at the connection point left out
     N_4_o_x = mu_4_o_x + mu_5_o_z
     N_4_o_y = mu_4_o_y - c_5_t*mu_5_o_x - mu_5_o_y*s_5
     N_4_o_z = mu_4_o_z + mu_5_o_x*s_5 - c_5_t*mu_5_o_y
-    # (rrrrrr-N32) remainder without the acceleration in: inertia force of link 4 less its weight
+    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
     f_4_o_x = (
     B_4_o_xz*h_4_x + acc_4_o_x*rrrrrr_link4_mass - B_4_o_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
     )
@@ -5588,11 +4541,11 @@ def _Z_rrrrrr(c, k, x, s, f):
     f_4_o_z = (
     B_4_o_zx*h_4_z + acc_4_o_z*rrrrrr_link4_mass - B_4_o_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
     )
-    # (rrrrrr-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrrr-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = a_o3_o_r0_x - g_r4_x
     acc_3_o_y = a_o3_o_r0_y - g_r4_y
     acc_3_o_z = a_o3_o_t_3 - g_r1_x
-    # (rrrrrr-N68) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrrrr-N83) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
         B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
@@ -5605,14 +4558,14 @@ def _Z_rrrrrr(c, k, x, s, f):
     B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
         B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
     )
-    # (rrrrrr-N32) remainder without the acceleration in: inertia force of link 4 less its weight
+    # (rrrrrr-N20) remainder without the acceleration in: inertia force of link 4 less its weight
     f_4_o_r0_x = -c_4_t*f_4_o_x - f_4_o_y*s_4
     f_4_o_r0_y = f_4_o_x*s_4 - c_4_t*f_4_o_y
-    # (rrrrrr-N72) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrrr-N85) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_o_x = N_4_o_z + mu_3_o_x
     N_3_o_y = mu_3_o_y - N_4_o_x*c_4_t - N_4_o_y*s_4 - f_4_o_r0_y*rrrrrr_joint4_offset_x
     N_3_o_z = mu_3_o_z + N_4_o_x*s_4 + f_4_o_r0_x*rrrrrr_joint4_offset_x - N_4_o_y*c_4_t
-    # (rrrrrr-N22) remainder without the acceleration in: inertia force of link 3 less its weight
+    # (rrrrrr-N14) remainder without the acceleration in: inertia force of link 3 less its weight
     f_3_o_x = B_3_o_xy*h_3_y + B_3_o_xz*h_3_z + acc_3_o_x*rrrrrr_link3_mass - W_3_xx*h_3_x
     f_3_o_y = (
     B_3_o_yx*h_3_x + B_3_o_yz*h_3_z + acc_3_o_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
@@ -5620,56 +4573,59 @@ def _Z_rrrrrr(c, k, x, s, f):
     f_3_o_z = (
     B_3_o_zx*h_3_x + B_3_o_zy*h_3_y + acc_3_o_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
     )
-    # (rrrrrr-N76) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
+    # (rrrrrr-N87) remainder without the acceleration in: inertia force of the links from 3 outwards, the last link left out
     T_3_o_x = f_3_o_x + f_4_o_z
     T_3_o_y = f_3_o_y + f_4_o_r0_x
     T_3_o_z = f_3_o_z + f_4_o_r0_y
-    # (rrrrrr-N86) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrrr-N95) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_x = (
-    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t +
-        g_r3_y*h_2_z - B_2_o_zx*J_2_xy - g_r1_x*h_2_y
+    B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
+        B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
     )
     mu_2_o_y = (
-    B_2_o_zy*J_2_xy + g_r1_x*h_2_x - B_2_o_xy*J_2_yz - B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t -
-        W_2_t_3) - Sigma_2_zz*alpha_1_o_t_2 - g_r3_x*h_2_z
+    B_2_o_zy*J_2_xy + Sigma_2_zz*alpha_1_o_t_2 + g_r1_x*h_2_x - B_2_o_xy*J_2_yz -
+        B_2_o_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
     )
     mu_2_o_z = (
-    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_xz*alpha_1_o_t + g_r3_x*h_2_y -
-        B_2_o_xy*Sigma_2_yy - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
+    B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_o_t_2 + g_r3_x*h_2_y -
+        B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - g_r3_y*h_2_x
     )
-    # (rrrrrr-N90) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrrr-N97) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_o_x = mu_2_o_x + N_3_o_x*c_3 - N_3_o_y*s_3
     N_2_o_y = mu_2_o_y + N_3_o_x*s_3 + N_3_o_y*c_3 - T_3_o_z*rrrrrr_joint3_offset_x
     N_2_o_z = N_3_o_z + mu_2_o_z + rrrrrr_joint3_offset_x*(T_3_o_x*s_3 + T_3_o_y*c_3)
-    # (rrrrrr-N104) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
-    mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N108) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrrr-N107) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    mu_1_o_z = -J_1_xx*qdd_1_o_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+    # (rrrrrr-N109) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + N_2_o_x*s_2 - N_2_o_y*c_2_t
-    # (rrrrrr-N116) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_o_t = (
-    N_2_o_z*w_1_t_33 + N_4_o_z*(rrrrrr_platform_joint_offset_x*(w_1_t_12*w_1_t_5 -
-        w_1_t_15*w_1_t_7) - end_p1_r8_y*w_1_t_35) + mu_5_o_z*(n_m2_t*w_1_t_35 +
-        v_4_z*(w_1_t_36*w_1_t_5 - w_1_t_18*w_1_t_7) - n_m1_r0_y*(v_1_y*w_1_t_12 + w_1_t_21*w_1_t_7
-        - v_1_z*w_1_t_36)) - N_1_o_z*(end_p1_r8_y*(n_m1_r0_y*w_1_t_21 + v_4_z*w_1_t_18) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_26 + w_1_t_30*w_1_t_8 - w_1_t_28*w_1_t_6)) -
-        N_3_o_z*w_1_t_34
+    # (rrrrrr-N117) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    G_o_t = inv_w_1_t_69*mu_5_o_z
+    G_o_t_2 = inv_w_1_t_101*(G_o_t*w_1_t_18 - N_4_o_z)
+    G_o_t_3 = inv_w_1_t_150*(G_o_t*w_1_t_21 + G_o_t_2*w_1_t_36 - N_1_o_z)
+    G_o_t_4 = inv_w_1_t_194*(G_o_t*w_1_t_25 + G_o_t_2*w_1_t_42 - N_2_o_z - G_o_t_3*w_1_t_58)
+    G_o_t_5 = (
+    inv_w_1_t_222*(N_3_o_z + G_o_t*w_1_t_28 + G_o_t_3*w_1_t_64 + G_o_t_4*w_1_t_76 -
+        G_o_t_2*w_1_t_47)
     )
-    G_o_t_2 = (
-    N_1_o_z*(n_m1_r0_y*w_1_t_45 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_10) +
-        N_3_o_z*(n_m1_r0_y*w_1_t_48 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_42) +
-        N_4_o_z*(end_p1_r8_y*w_1_t_20 + rrrrrr_platform_joint_offset_x*w_1_t_11) +
-        mu_5_o_z*(n_m1_r0_y*w_1_t_49 - n_m2_t*w_1_t_20) - N_2_o_z*(n_m1_r0_y*w_1_t_47 -
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_39)
+    G_o_t_6 = size*(G_o_t_2*w_1_t_34 + G_o_t_3*w_1_t_56 + G_o_t_4*w_1_t_74 - G_o_t_5*w_1_t_86)
+    G_o_t_7 = (
+    size*(G_o_t_2*w_1_t_35 + G_o_t_3*w_1_t_57 + G_o_t_4*w_1_t_75 - G_o_t*w_1_t_17 -
+        G_o_t_5*w_1_t_87)
     )
-    # (rrrrrr-N124) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    c_o_x = G_o_t*inv_w_1_t_113 + h_5_x*(W_5_t_2 + W_5_t_3) - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z
+    # (rrrrrr-N133) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    c_o_x = (
+    G_o_t_3*w_1_t_53 + G_o_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_o_xy*h_5_y - B_5_o_xz*h_5_z -
+        G_o_t_5*w_1_t_83
+    )
     c_o_y = (
-    h_5_y*(W_5_t + W_5_t_3) + inv_w_1_t_113*(N_1_o_z*end_p1_r8_y*w_1_t_37 +
-        N_3_o_z*end_p1_r8_y*w_1_t_44 + N_4_o_z*end_p1_r8_y*w_1_t_16 - mu_5_o_z*w_1_t_17 -
-        N_2_o_z*end_p1_r8_y*w_1_t_41) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z
+    G_o_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_o_yx*h_5_x - B_5_o_yz*h_5_z - G_o_t*w_1_t_16
+        - G_o_t_2*w_1_t_32 - G_o_t_3*w_1_t_54 - G_o_t_4*w_1_t_72
     )
-    c_o_z = h_5_z*(W_5_t + W_5_t_2) - B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_2*inv_w_1_t_113
-    # (rrrrrr-N130) velocity and gravity terms of the leg force
+    c_o_z = (
+    G_o_t_2*w_1_t_33 + G_o_t_3*w_1_t_55 + G_o_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) -
+        B_5_o_zx*h_5_x - B_5_o_zy*h_5_y - G_o_t_5*w_1_t_85
+    )
+    # (rrrrrr-N139) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rrrrrr_axes5_x*c_o_x - axis_y_rrrrrr_axes5_in_base_x*c_o_y -
         axis_z_rrrrrr_axes5_in_base_x*c_o_z
@@ -5682,26 +4638,27 @@ def _Z_rrrrrr(c, k, x, s, f):
     -axis_x_rrrrrr_axes5_z*c_o_x - axis_y_rrrrrr_axes5_in_base_z*c_o_y -
         axis_z_rrrrrr_axes5_in_base_z*c_o_z
     )
-    # (rrrrrr-N120) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_o_x = N_1_o_z*o_1_t + N_3_o_z*o_3_t + N_4_o_z*o_4_t + mu_5_o_z*o_5_t - N_2_o_z*o_2_t
-    G_m_o_y = N_1_o_z*o_1_y + N_2_o_z*o_2_y + N_3_o_z*o_3_y + N_4_o_z*o_4_y + mu_5_o_z*o_5_y
-    G_m_o_z = (
-    N_1_o_z*o_1_t_2 + N_3_o_z*o_3_t_2 + N_4_o_z*o_4_t_2 + mu_5_o_z*o_5_t_2 - N_2_o_z*o_2_t_2
-    )
+    # (rrrrrr-N129) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_o_t = G_o_t_6*end_p1_r8_y
+    G_m_o_t_2 = G_o_t_7*end_p1_r8_y
+    G_m_o_y = G_o_t_7*end_p1_r6_x - G_o_t_6*end_p1_r8_x
     # (M7) rotational part of Z
     Z_a_t = (
-    G_m_o_x*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
-        G_m_o_z*axis_z_rrrrrr_axes5_in_base_x + U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
+    G_m_o_t*axis_x_rrrrrr_axes5_x + G_m_o_y*axis_y_rrrrrr_axes5_in_base_x +
+        U_in_base_z*q_in_base_y - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_x -
+        U_in_base_y*q_in_base_z
     )
     Z_a_t_2 = (
-    G_m_o_x*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
-        G_m_o_z*axis_z_rrrrrr_axes5_in_base_y + U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
+    G_m_o_t*axis_x_rrrrrr_axes5_y + G_m_o_y*axis_y_rrrrrr_axes5_in_base_y +
+        U_in_base_x*q_in_base_z - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_y -
+        U_in_base_z*q_in_base_x
     )
     Z_a_t_3 = (
-    G_m_o_x*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
-        G_m_o_z*axis_z_rrrrrr_axes5_in_base_z + U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
+    G_m_o_t*axis_x_rrrrrr_axes5_z + G_m_o_y*axis_y_rrrrrr_axes5_in_base_z +
+        U_in_base_y*q_in_base_x - G_m_o_t_2*axis_z_rrrrrr_axes5_in_base_z -
+        U_in_base_x*q_in_base_y
     )
-    ok = (abs(w_1_t_24) > _TOLERANCE * w_1_t) & (abs(-qd_1_t_17) > _TOLERANCE * w_1_t)
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
     return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
 
 
@@ -5723,7 +4680,7 @@ def _Z_after(c, s, t, f):
     return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
 
 
-# H: 1860 mul, 1014 add, 6 div, 0 sqrt, 60 trig
+# H: 2190 mul, 1272 add, 30 div, 30 sqrt, 60 trig
 def _H_before(c, X, q, f):
     X_3 = X[3]
     X_4 = X[4]
@@ -5758,6 +4715,7 @@ def _H_before(c, X, q, f):
 
 
 def _H_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     (
@@ -5767,7 +4725,7 @@ def _H_rrrrrr(c, k, x, s, f):
         rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -5851,10 +4809,10 @@ def _H_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -5874,9 +4832,9 @@ def _H_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -5941,55 +4899,113 @@ def _H_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_12 = (
-    n_m2_t*(v_1_x*(v_2_z*w_1_t_6 - v_3_z*w_1_t_6) + w_1_t_11*w_1_t_5 - v_1_z*w_1_t_10) +
-        v_4_z*(w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7) - n_m1_r0_y*(v_1_x*(v_2_z*w_1_t_8 -
-        v_3_z*w_1_t_8) + w_1_t_11*w_1_t_7 - v_1_z*w_1_t_9)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_13 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_14 = (
-    n_m1_r0_y*(v_1_x*(v_2_y*v_3_z - v_2_z*v_3_y) + v_1_z*w_1_t_13 - v_1_y*w_1_t_11) +
-        v_4_z*(v_1_x*(v_2_y*w_1_t_6 - v_3_y*w_1_t_6) + w_1_t_13*w_1_t_5 - v_1_y*w_1_t_10)
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_15 = end_p1_r8_y*w_1_t_14 + rrrrrr_platform_joint_offset_x*w_1_t_12
-    w_1_t_16 = (
-    rrrrrr_platform_joint_offset_x*(v_1_z*(n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8) +
-        w_1_t_7*(n_m1_r0_y*v_3_z + v_4_z*w_1_t_6) - w_1_t_5*(n_m2_t*v_3_z + v_4_z*w_1_t_8))
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    inv_w_1_t_113 = 1.0/w_1_t_15
-    w_1_t_17 = v_1_x*w_1_t_6 - v_3_x*w_1_t_5
-    w_1_t_18 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_19 = n_m1_r0_y*w_1_t_18 + v_4_z*w_1_t_17
-    w_1_t_20 = (
-    end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) + rrrrrr_platform_joint_offset_x*(v_1_x*w_1_t_8 -
-        v_3_x*w_1_t_7)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
+    )
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
+    )
+    inv_w_1_t_222 = 1.0/w_1_t_82
     # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = (
-    inv_w_1_t_113*(w_1_t_16 + end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_3_z - v_1_z*v_3_y) +
-        v_4_z*(v_1_y*w_1_t_6 - v_3_y*w_1_t_5)))
-    )
-    w_2_t_2 = end_p1_r8_y*inv_w_1_t_113*w_1_t_19
-    w_2_t_3 = inv_w_1_t_113*(n_m1_r0_y*w_1_t_20 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_17)
-    w_2_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_20 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_18)
-    w_2_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_19
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_4
-    o_2_t_2 = end_p1_r8_y*w_2_t_5
-    o_2_y = end_p1_r6_x*w_2_t_5 + end_p1_r8_x*w_2_t_4
+    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
+    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
+    w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
+    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
+    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
     # (M2) coupling block of M
     q_in_base_x = (
     R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
@@ -6002,35 +5018,42 @@ def _H_rrrrrr(c, k, x, s, f):
     )
     # (rrrrrr-V16) force part of reciprocal wrench 2
     w_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*w_2_t_2 - axis_x_rrrrrr_axes5_x*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_3
+    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
     )
     w_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*w_2_t_2 - axis_x_rrrrrr_axes5_y*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_3
+    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
     )
     w_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*w_2_t_2 - axis_x_rrrrrr_axes5_z*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_3
+    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+    )
+    # (rrrrrr-V29) moment part of reciprocal wrench 2
+    o_2_x = (
+    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
+    )
+    o_2_y = (
+    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
+    )
+    o_2_z = (
+    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
+        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
     )
     # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y + q_in_base_y*w_2_in_base_z - axis_x_rrrrrr_axes5_x*o_2_t
-        - axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 - q_in_base_z*w_2_in_base_y
-    )
-    H_a_2_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y + q_in_base_z*w_2_in_base_x - axis_x_rrrrrr_axes5_y*o_2_t
-        - axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 - q_in_base_x*w_2_in_base_z
-    )
-    H_a_2_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y + q_in_base_x*w_2_in_base_y - axis_x_rrrrrr_axes5_z*o_2_t
-        - axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 - q_in_base_y*w_2_in_base_x
-    )
-    ok = (abs(w_1_t_15) > _TOLERANCE * w_1_t)
+    H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
+    H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
+    H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
     return (ok, (), (w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y, H_a_2_z,),)
 
 
-# required: 6651 mul, 4623 add, 12 div, 0 sqrt, 60 trig
+# required: 5649 mul, 4221 add, 30 div, 30 sqrt, 60 trig
 def _required_before(c, X, V, A, q, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
@@ -6157,6 +5180,7 @@ def _required_before(c, X, V, A, q, f):
 
 
 def _required_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     gravity_x, gravity_y, gravity_z = c
@@ -6172,7 +5196,7 @@ def _required_rrrrrr(c, k, x, s, f):
         rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -6259,10 +5283,10 @@ def _required_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -6282,9 +5306,9 @@ def _required_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -6349,110 +5373,122 @@ def _required_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7
-    w_1_t_12 = v_2_z*w_1_t_8 - v_3_z*w_1_t_8
-    w_1_t_13 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_14 = v_1_x*w_1_t_12 + w_1_t_13*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_15 = v_2_z*w_1_t_6 - v_3_z*w_1_t_6
-    w_1_t_16 = v_1_x*w_1_t_15 + w_1_t_13*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_17 = n_m2_t*w_1_t_16 + v_4_z*w_1_t_11 - n_m1_r0_y*w_1_t_14
-    w_1_t_18 = v_2_y*w_1_t_6 - v_3_y*w_1_t_6
-    w_1_t_19 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_20 = v_1_x*w_1_t_18 + w_1_t_19*w_1_t_5 - v_1_y*w_1_t_10
-    w_1_t_21 = v_2_y*v_3_z - v_2_z*v_3_y
-    w_1_t_22 = v_1_x*w_1_t_21 + v_1_z*w_1_t_19 - v_1_y*w_1_t_13
-    w_1_t_23 = n_m1_r0_y*w_1_t_22 + v_4_z*w_1_t_20
-    w_1_t_24 = end_p1_r8_y*w_1_t_23 + rrrrrr_platform_joint_offset_x*w_1_t_17
-    w_1_t_25 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_26 = v_2_z*w_1_t_25
-    w_1_t_27 = v_4_z*w_1_t_8
-    w_1_t_28 = w_1_t_27 + n_m2_t*v_3_z
-    w_1_t_29 = v_4_z*w_1_t_6
-    w_1_t_30 = w_1_t_29 + n_m1_r0_y*v_3_z
-    w_1_t_31 = v_1_z*w_1_t_25
-    w_1_t_32 = v_1_y*w_1_t_6
-    w_1_t_33 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_3_z - v_1_z*v_3_y) + v_4_z*(w_1_t_32 - v_3_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_31 + w_1_t_30*w_1_t_7 - w_1_t_28*w_1_t_5)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_34 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_2_z - v_1_z*v_2_y) + v_4_z*(w_1_t_32 - v_2_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_31 + w_1_t_7*(w_1_t_29 + n_m1_r0_y*v_2_z) -
-        w_1_t_5*(w_1_t_27 + n_m2_t*v_2_z))
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_35 = v_1_y*w_1_t_15 + w_1_t_21*w_1_t_5 - v_1_z*w_1_t_18
-    w_1_t_36 = v_2_y*w_1_t_8 - v_3_y*w_1_t_8
-    inv_w_1_t_113 = 1.0/w_1_t_24
-    w_1_t_37 = n_m1_r0_y*w_1_t_13 + v_4_z*w_1_t_10
-    w_1_t_38 = v_1_x*w_1_t_6
-    w_1_t_39 = w_1_t_38 - v_3_x*w_1_t_5
-    w_1_t_40 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_41 = n_m1_r0_y*w_1_t_40 + v_4_z*w_1_t_39
-    w_1_t_42 = end_p1_r8_y*w_1_t_41
-    w_1_t_43 = w_1_t_38 - v_2_x*w_1_t_5
-    w_1_t_44 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_45 = n_m1_r0_y*w_1_t_44 + v_4_z*w_1_t_43
-    w_1_t_46 = end_p1_r8_y*w_1_t_19 + rrrrrr_platform_joint_offset_x*w_1_t_9
-    w_1_t_47 = v_1_x*w_1_t_8
-    w_1_t_48 = (
-    end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) + rrrrrr_platform_joint_offset_x*(w_1_t_47 -
-        v_3_x*w_1_t_7)
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_49 = n_m1_r0_y*w_1_t_48 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_39
-    w_1_t_50 = (
-    end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) + rrrrrr_platform_joint_offset_x*(w_1_t_47 -
-        v_2_x*w_1_t_7)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_1_t_51 = v_1_x*w_1_t_36 + w_1_t_19*w_1_t_7 - v_1_y*w_1_t_9
-    w_1_t_52 = inv_w_1_t_113*(v_4_z*w_1_t_46 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_13)
-    w_1_t_53 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_37
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
+    )
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
+    )
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    w_1_t_83 = inv_w_1_t_222*w_1_t_77
+    w_1_t_84 = inv_w_1_t_222*w_1_t_78
+    w_1_t_85 = inv_w_1_t_222*w_1_t_79
+    w_1_t_86 = inv_w_1_t_222*w_1_t_80
+    w_1_t_87 = inv_w_1_t_222*w_1_t_81
     # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_113*w_1_t_33
-    w_2_t_2 = inv_w_1_t_113*w_1_t_42
-    w_2_t_3 = inv_w_1_t_113*w_1_t_49
-    w_2_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_48 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_40)
-    w_2_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_41
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_113*(v_4_z*w_1_t_50 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_44)
-    w_3_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_45
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_14 - end_p1_r8_y*w_1_t_22)
-    w_4_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_16
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = inv_w_1_t_113*(n_m2_t*w_1_t_22 + v_4_z*w_1_t_51)
-    w_5_t_2 = inv_w_1_t_113*w_1_t_23
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_52
-    o_1_t_2 = end_p1_r8_y*w_1_t_53
-    o_1_y = -end_p1_r6_x*w_1_t_53 - end_p1_r8_x*w_1_t_52
+    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
     # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_4
-    o_2_t_2 = end_p1_r8_y*w_2_t_5
-    o_2_y = end_p1_r6_x*w_2_t_5 + end_p1_r8_x*w_2_t_4
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t
-    o_3_t_2 = end_p1_r8_y*w_3_t_2
-    o_3_y = -end_p1_r6_x*w_3_t_2 - end_p1_r8_x*w_3_t
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t
-    o_4_t_2 = end_p1_r8_y*w_4_t_2
-    o_4_y = -end_p1_r6_x*w_4_t_2 - end_p1_r8_x*w_4_t
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t
-    o_5_t_2 = end_p1_r8_y*w_5_t_2
-    o_5_y = -end_p1_r6_x*w_5_t_2 - end_p1_r8_x*w_5_t
+    o_2_t = end_p1_r8_y*w_2_t_5
+    o_2_t_2 = end_p1_r8_y*w_2_t_6
+    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
     # (M2) coupling block of M
     q_in_base_x = (
     R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
@@ -6470,22 +5506,6 @@ def _required_rrrrrr(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_1_t + axis_y_rrrrrr_axes5_in_base_x*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_1_t_2
-    )
-    o_1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_1_t + axis_y_rrrrrr_axes5_in_base_y*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_1_t_2
-    )
-    o_1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_1_t + axis_y_rrrrrr_axes5_in_base_z*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_1_t_2
-    )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t = o_1_in_base_x*omega_x + o_1_in_base_y*omega_y + o_1_in_base_z*omega_z
-    # (rrrrrr-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
     )
@@ -6497,184 +5517,7 @@ def _required_rrrrrr(c, k, x, s, f):
     S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_dot_z*axis_z_rrrrrr_axes5_in_base_z
     )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t_2 = end_p1_r8_y*n_m1_r0_y
-    qd_1_t_3 = end_p1_r8_y*w_1_t_6
-    qd_1_t_4 = qd_1_t_3*v_4_z
-    qd_1_t_5 = qd_1_t_4 + qd_1_t_2*v_3_z
-    qd_1_t_6 = qd_1_t_4 + qd_1_t_2*v_2_z
-    qd_1_t_7 = v_3_z*w_1_t_25 - w_1_t_26
-    qd_1_t_8 = qd_1_t_6*v_3_y + qd_1_t_7*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_2_y
-    qd_1_t_9 = end_p1_r8_y*w_1_t_5
-    qd_1_t_10 = qd_1_t_2*v_1_z + qd_1_t_9*v_4_z
-    qd_1_t_11 = n_m2_t*w_1_t_5 - n_m1_r0_y*w_1_t_7
-    qd_1_t_12 = v_4_z*(w_1_t_5*w_1_t_8 - w_1_t_6*w_1_t_7)
-    qd_1_t_13 = qd_1_t_12 + qd_1_t_11*v_3_z - w_1_t_31
-    qd_1_t_14 = qd_1_t_10*v_3_y + qd_1_t_13*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_1_y
-    qd_1_t_15 = qd_1_t_12 + qd_1_t_11*v_2_z - w_1_t_31
-    qd_1_t_16 = qd_1_t_10*v_2_y + qd_1_t_15*rrrrrr_platform_joint_offset_x - qd_1_t_6*v_1_y
-    qd_1_t_17 = qd_1_t_16*v_3_x + qd_1_t_8*v_1_x - qd_1_t_14*v_2_x
-    qd_1_t_18 = qd_1_t_5*v_2_x - qd_1_t_6*v_3_x
-    qd_1_t_19 = rrrrrr_platform_joint_offset_x*w_1_t_25
-    qd_1_t_20 = qd_1_t_2*v_3_y - qd_1_t_19
-    qd_1_t_21 = qd_1_t_19 - qd_1_t_2*v_2_y
-    qd_1_t_22 = qd_1_t_20*v_2_x + qd_1_t_21*v_3_x
-    inv_qd_1_t_44 = 1.0/qd_1_t_17
-    qd_1_t_23 = qd_1_t_5*v_1_x - qd_1_t_10*v_3_x
-    qd_1_t_24 = qd_1_t_2*v_1_y - qd_1_t_11*rrrrrr_platform_joint_offset_x
-    qd_1_t_25 = qd_1_t_20*v_1_x - qd_1_t_24*v_3_x
-    qd_1_t_26 = qd_1_t_6*v_1_x - qd_1_t_10*v_2_x
-    qd_1_t_27 = qd_1_t_21*v_1_x + qd_1_t_24*v_2_x
-    qd_1_t_28 = rrrrrr_platform_joint_offset_x*w_1_t_8
-    qd_1_t_29 = qd_1_t_28 + end_p1_r8_y*v_3_y
-    qd_1_t_30 = qd_1_t_28 + end_p1_r8_y*v_2_y
-    qd_1_t_31 = qd_1_t_29*w_1_t_6 - qd_1_t_30*w_1_t_6
-    qd_1_t_32 = w_1_t_6*(end_p1_r8_y*v_1_y + rrrrrr_platform_joint_offset_x*w_1_t_7)
-    qd_1_t_33 = qd_1_t_29*w_1_t_5 - qd_1_t_32
-    qd_1_t_34 = qd_1_t_32 - qd_1_t_30*w_1_t_5
-    qd_1_t_35 = qd_1_t_33*v_2_z + qd_1_t_34*v_3_z - qd_1_t_31*v_1_z
-    qd_1_t_36 = qd_1_t_3*v_1_z
-    qd_1_t_37 = (
-    v_1_x*(qd_1_t_3*v_2_z - qd_1_t_3*v_3_z) + v_3_x*(qd_1_t_36 - qd_1_t_9*v_2_z) -
-        v_2_x*(qd_1_t_36 - qd_1_t_9*v_3_z)
-    )
-    qd_1_t_38 = qd_1_t_33*v_2_x + qd_1_t_34*v_3_x - qd_1_t_31*v_1_x
-    qd_1_t_39 = qd_1_t_15*v_3_y + qd_1_t_7*v_1_y - qd_1_t_13*v_2_y
-    qd_1_t_40 = qd_1_t_15*v_3_x + qd_1_t_7*v_1_x - qd_1_t_13*v_2_x
-    qd_1_t_41 = v_1_y*w_1_t_25
-    qd_1_t_42 = (
-    v_1_x*(v_2_y*w_1_t_25 - v_3_y*w_1_t_25) + v_3_x*(qd_1_t_41 - qd_1_t_11*v_2_y) -
-        v_2_x*(qd_1_t_41 - qd_1_t_11*v_3_y)
-    )
-    qd_1 = (
-    qd_1_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_8 + S_dot_tip_y*qd_1_t_18 - S_dot_tip_z*qd_1_t_22)
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y - axis_x_rrrrrr_axes5_x*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*o_2_t_2
-    )
-    o_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y - axis_x_rrrrrr_axes5_y*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*o_2_t_2
-    )
-    o_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y - axis_x_rrrrrr_axes5_z*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*o_2_t_2
-    )
-    # (rrrrrr-V34) rate of joint 2
-    qd_2_t = o_2_in_base_x*omega_x + o_2_in_base_y*omega_y + o_2_in_base_z*omega_z
-    qd_2 = (
-    qd_2_t - inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_14 + S_dot_tip_y*qd_1_t_23 - S_dot_tip_z*qd_1_t_25)
-    )
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2_t*qd_1
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_3_t + axis_y_rrrrrr_axes5_in_base_x*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_3_t_2
-    )
-    o_3_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_3_t + axis_y_rrrrrr_axes5_in_base_y*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_3_t_2
-    )
-    o_3_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_3_t + axis_y_rrrrrr_axes5_in_base_z*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_3_t_2
-    )
-    # (rrrrrr-V35) rate of joint 3
-    qd_3_t = o_3_in_base_x*omega_x + o_3_in_base_y*omega_y + o_3_in_base_z*omega_z
-    qd_3 = (
-    qd_3_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_16 + S_dot_tip_y*qd_1_t_26 + S_dot_tip_z*qd_1_t_27)
-    )
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_3
-    zeta_3_y = omega_2_r0_x*qd_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = -c_3*zeta_2_x - s_3*zeta_2_y
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x + zeta_3_x
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_z = qd_2 + qd_3
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_4_t + axis_y_rrrrrr_axes5_in_base_x*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_4_t_2
-    )
-    o_4_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_4_t + axis_y_rrrrrr_axes5_in_base_y*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_4_t_2
-    )
-    o_4_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_4_t + axis_y_rrrrrr_axes5_in_base_z*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_4_t_2
-    )
-    # (rrrrrr-V36) rate of joint 4
-    qd_4_t = o_4_in_base_x*omega_x + o_4_in_base_y*omega_y + o_4_in_base_z*omega_z
-    qd_4 = (
-    qd_4_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_35 + S_dot_tip_y*qd_1_t_37 - S_dot_tip_z*qd_1_t_38)
-    )
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_4
-    zeta_4_y = omega_3_r1_x*qd_4
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = zeta_4_x - beta_3_t
-    beta_4_y = -beta_3_t_2 - zeta_4_y
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_4
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_5_t + axis_y_rrrrrr_axes5_in_base_x*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_5_t_2
-    )
-    o_5_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_5_t + axis_y_rrrrrr_axes5_in_base_y*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_5_t_2
-    )
-    o_5_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_5_t + axis_y_rrrrrr_axes5_in_base_z*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_5_t_2
-    )
-    # (rrrrrr-V37) rate of joint 5
-    qd_5_t = o_5_in_base_x*omega_x + o_5_in_base_y*omega_y + o_5_in_base_z*omega_z
-    qd_5 = (
-    qd_5_t + inv_qd_1_t_44*(S_dot_tip_y*qd_1_t_40 + S_dot_tip_z*qd_1_t_42 - S_dot_tip_x*qd_1_t_39)
-    )
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_5
-    zeta_5_y = omega_4_r1_x*qd_5
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + zeta_5_x
-    beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V46) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_5
     # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t = end_p1_r8_y*omega_4_r1_y
     omega_tip_x = (
     axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
     )
@@ -6686,54 +5529,9 @@ def _required_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
         axis_z_rrrrrr_axes5_in_base_z*omega_z
     )
+    nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
     nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V41) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V43) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xx = W_3_t_2 + W_3_t_3
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V45) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-    W_4_t_3 = omega_4_z*omega_4_z
-    W_4_xy = omega_3_r1_x*omega_3_r1_y
-    W_4_xz = omega_3_r1_x*omega_4_z
-    W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V47) centripetal tensor of link 5
-    W_5_t = omega_4_r1_x*omega_4_r1_x
-    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-    W_5_t_3 = omega_5_z*omega_5_z
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    W_5_xz = omega_4_r1_x*omega_5_z
-    W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1
-    omega_1_y = e_1_r6_y*qd_1
-    omega_1_z = qd_1*v_1_t
+    nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
     bias_t = rrrrrr_joint2_offset_x*s_2
     bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
@@ -6743,68 +5541,17 @@ def _required_rrrrrr(c, k, x, s, f):
     bias_t_4 = d_2_r2_y*s_4
     d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
     d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = bias_t_3*omega_1_y - d_2_r6_y*omega_1_z
-    bias_t_6 = d_2_r6_x*omega_1_z - bias_t_3*omega_1_x
-    bias_t_7 = d_2_r6_y*omega_1_x - d_2_r6_x*omega_1_y
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_8 = c_3*rrrrrr_joint3_offset_x
-    bias_t_9 = rrrrrr_joint3_offset_x*s_3
-    bias_t_10 = bias_t_9*c_4_t
-    bias_t_11 = bias_t_9*s_4
-    d_3_r4_x = bias_t_8*s_5 - bias_t_11*c_5_t
-    d_3_r4_y = -bias_t_11*s_5 - bias_t_8*c_5_t
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_x = omega_1_x + qd_2*v_2_t
-    omega_2_y = omega_1_y + qd_2*v_2_t_2
-    omega_2_z = qd_2*s_4 - omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_12 = bias_t_10*omega_2_y - d_3_r4_y*omega_2_z
-    bias_t_13 = d_3_r4_x*omega_2_z - bias_t_10*omega_2_x
-    bias_t_14 = d_3_r4_y*omega_2_x - d_3_r4_x*omega_2_y
-    bias_t_15 = rrrrrr_joint4_offset_x*s_5
-    bias_t_16 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_17 = bias_t_16*omega_3_r1_x
-    bias_t_18 = bias_t_15*omega_3_r1_x
-    bias_t_19 = bias_t_15*omega_3_r3_y + bias_t_16*omega_3_r3_x
-    bias_t_20 = rrrrrr_joint5_offset_x*s_5
-    bias_t_21 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_22 = bias_t_21*omega_3_r1_x
-    bias_t_23 = bias_t_20*omega_3_r1_x
-    bias_t_24 = bias_t_20*omega_4_r1_y + bias_t_21*omega_4_r1_x
-    bias_t_25 = omega_5_z*rrrrrr_platform_joint_offset_x
-    bias_t_26 = omega_4_r1_y*rrrrrr_platform_joint_offset_x
-    bias_x = (
-    beta_4_x*bias_t_21 + bias_t_10*zeta_2_r4_y + bias_t_14*omega_2_y + bias_t_7*omega_1_y +
-        d_3_r4_y*zeta_2_t - beta_3_t*bias_t_16 - bias_t_13*omega_2_z - bias_t_18*omega_3_r1_x -
-        bias_t_19*omega_3_r3_y - bias_t_23*omega_3_r1_x - bias_t_24*omega_4_r1_y -
-        bias_t_25*omega_5_z - bias_t_26*omega_4_r1_y - bias_t_6*omega_1_z
-    )
-    bias_y = (
-    beta_4_x*bias_t_20 + beta_4_x*rrrrrr_platform_joint_offset_x + bias_t_12*omega_2_z +
-        bias_t_17*omega_3_r1_x + bias_t_19*omega_3_r3_x + bias_t_22*omega_3_r1_x +
-        bias_t_24*omega_4_r1_x + bias_t_26*omega_4_r1_x + bias_t_5*omega_1_z - beta_3_t*bias_t_15
-        - bias_t_10*zeta_2_r4_x - bias_t_14*omega_2_x - bias_t_7*omega_1_x - d_3_r4_x*zeta_2_t
-    )
-    bias_z = (
-    bias_t_13*omega_2_x + bias_t_18*omega_3_r3_x + bias_t_23*omega_4_r1_x + bias_t_25*omega_4_r1_x
-        + bias_t_5*omega_1_y + d_3_r4_y*zeta_2_r4_x - beta_4_r1_x*bias_t_21 -
-        beta_4_r1_y*bias_t_20 - beta_5_y*rrrrrr_platform_joint_offset_x - bias_t_12*omega_2_y -
-        bias_t_15*(beta_3_t_2*s_5 - beta_4_t_2) - bias_t_16*(beta_4_t + beta_3_t_2*c_5_t) -
-        bias_t_17*omega_3_r3_y - bias_t_22*omega_4_r1_y - bias_t_6*omega_1_x -
-        d_3_r4_x*zeta_2_r4_y
-    )
-    # (rrrrrr-A65) remainder without the acceleration in: acceleration of the origin of joint 3
-    a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-    # (rrrrrr-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    bias_t_5 = c_3*rrrrrr_joint3_offset_x
+    bias_t_6 = rrrrrr_joint3_offset_x*s_3
+    bias_t_7 = bias_t_6*c_4_t
+    bias_t_8 = bias_t_6*s_4
+    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+    bias_t_9 = rrrrrr_joint4_offset_x*s_5
+    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+    bias_t_11 = rrrrrr_joint5_offset_x*s_5
+    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
     g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
@@ -6813,21 +5560,126 @@ def _required_rrrrrr(c, k, x, s, f):
     g_r4_y = c_3*g_r3_y - g_r3_x*s_3
     # (rrrrrr-V16) force part of reciprocal wrench 2
     w_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*w_2_t_2 - axis_x_rrrrrr_axes5_x*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_3
+    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
     )
     w_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*w_2_t_2 - axis_x_rrrrrr_axes5_y*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_3
+    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
     )
     w_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*w_2_t_2 - axis_x_rrrrrr_axes5_z*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_3
+    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
     )
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_2_x = o_2_in_base_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
-    H_a_2_y = o_2_in_base_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
-    H_a_2_z = o_2_in_base_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+    # (rrrrrr-V35) rate of joint 1
+    qd_1_t = nd_m1_t_3*size
+    qd_1_t_2 = nd_m1_t*size
+    qd_1_t_3 = (
+    inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
+        S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+    )
+    qd_1_t_4 = (
+    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+    )
+    qd_1_t_5 = (
+    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+    )
+    qd_1_t_6 = (
+    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
+        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+    )
+    qd_1_t_7 = (
+    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
+        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+    )
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_t = qd_1_t_5*s_2
+    omega_1_t_2 = c_2_t*qd_1_t_5
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_x = omega_1_t_2*qd_1_t_4
+    zeta_2_y = omega_1_t*qd_1_t_4
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
+    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
+    zeta_3_x = omega_2_r0_y*qd_1_t_3
+    zeta_3_y = omega_2_r0_x*qd_1_t_3
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+    beta_3_x = zeta_2_r0_x - zeta_3_x
+    beta_3_y = zeta_2_r0_y + zeta_3_y
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_z = -qd_1_t_3 - qd_1_t_4
+    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
+    zeta_4_x = omega_3_r1_y*qd_1_t_6
+    zeta_4_y = omega_3_r1_x*qd_1_t_6
+    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+    beta_3_t = beta_3_y*c_4_t
+    beta_3_t_2 = beta_3_y*s_4
+    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+    beta_4_x = -beta_3_t - zeta_4_x
+    beta_4_y = zeta_4_y - beta_3_t_2
+    # (rrrrrr-V46) angular velocity of link 4
+    omega_4_z = omega_2_r0_x - qd_1_t_6
+    omega_4_t = c_5_t*omega_3_r1_y
+    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+    omega_4_t_2 = omega_3_r1_y*s_5
+    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
+    zeta_5_x = omega_4_r1_y*qd_1_t_7
+    zeta_5_y = omega_4_r1_x*qd_1_t_7
+    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+    beta_4_t = beta_3_x*s_5
+    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+    beta_4_t_2 = beta_3_x*c_5_t
+    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+    beta_5_x = beta_4_r1_x + zeta_5_x
+    beta_5_y = beta_4_r1_y - zeta_5_y
+    # (rrrrrr-V48) angular velocity of link 5
+    omega_5_z = omega_3_r1_x + qd_1_t_7
+    # (rrrrrr-A14) rate of moment direction 1
+    nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
+    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+    nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
+    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+    nu_1_t_2 = omega_4_r1_x - omega_tip_x
+    nu_1_t_3 = omega_4_r1_y - omega_tip_y
+    nu_1_t_4 = omega_5_z - omega_tip_z
+    nu_1_t_5 = (
+    nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
+    )
+    nu_1 = nu_1_t - nu_1_t_5
+    # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
+    alpha_tip_y = (
+    alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
+        alpha_z*axis_y_rrrrrr_axes5_in_base_z
+    )
+    etad_1_t = (
+    end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
+        alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
+    )
+    etad_1 = nu_1 - etad_1_t
+    # (rrrrrr-A16) rate of moment direction 2
+    nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
+    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+    nu_2 = nu_2_t - nu_2_t_2
+    # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
+    etad_2_t = (
+    alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
+        alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+    )
+    etad_2 = nu_2 - etad_2_t
     # (rrrrrr-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -6836,6 +5688,89 @@ def _required_rrrrrr(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t = omega_1_t*omega_1_t
+    W_2_t_2 = omega_1_t_2*omega_1_t_2
+    W_2_t_3 = qd_1_t_4*qd_1_t_4
+    W_2_xy = omega_1_t*omega_1_t_2
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_t = omega_2_r0_x*omega_2_r0_x
+    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+    W_3_t_3 = omega_3_z*omega_3_z
+    W_3_xx = W_3_t_2 + W_3_t_3
+    W_3_xy = omega_2_r0_x*omega_2_r0_y
+    W_3_xz = omega_2_r0_x*omega_3_z
+    W_3_yz = omega_2_r0_y*omega_3_z
+    # (rrrrrr-V47) centripetal tensor of link 4
+    W_4_t = omega_3_r1_x*omega_3_r1_x
+    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
+    W_4_t_3 = omega_4_z*omega_4_z
+    W_4_xy = omega_3_r1_x*omega_3_r1_y
+    W_4_xz = omega_3_r1_x*omega_4_z
+    W_4_yz = omega_3_r1_y*omega_4_z
+    # (rrrrrr-V49) centripetal tensor of link 5
+    W_5_t = omega_4_r1_x*omega_4_r1_x
+    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
+    W_5_t_3 = omega_5_z*omega_5_z
+    W_5_xx = W_5_t_2 + W_5_t_3
+    W_5_xy = omega_4_r1_x*omega_4_r1_y
+    W_5_xz = omega_4_r1_x*omega_5_z
+    W_5_yz = omega_4_r1_y*omega_5_z
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_x = e_1_r6_x*qd_1_t_5
+    omega_1_y = e_1_r6_y*qd_1_t_5
+    omega_1_z = qd_1_t_5*v_1_t
+    # (rrrrrr-V41) centripetal tensor of link 1
+    W_1_t = omega_1_x*omega_1_x
+    W_1_t_2 = omega_1_y*omega_1_y
+    W_1_t_3 = omega_1_z*omega_1_z
+    W_1_xy = omega_1_x*omega_1_y
+    W_1_xz = omega_1_x*omega_1_z
+    W_1_yz = omega_1_y*omega_1_z
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_t = c_4_t*zeta_2_r0_y
+    zeta_2_t_2 = s_4*zeta_2_r0_y
+    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_x = omega_1_x - qd_1_t_4*v_2_t
+    omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
+    omega_2_z = -omega_1_z - qd_1_t_4*s_4
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t_4 = omega_2_x*omega_2_x
+    W_2_t_5 = omega_2_y*omega_2_y
+    W_2_t_6 = omega_2_z*omega_2_z
+    W_2_xy_2 = omega_2_x*omega_2_y
+    W_2_xz = omega_2_x*omega_2_z
+    W_2_yz = omega_2_y*omega_2_z
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
+    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+    bias_t_13 = W_5_xy + beta_4_x
+    bias_x = (
+    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
+    )
+    bias_y = (
+    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
+        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
+        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
+    )
+    bias_z = (
+    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
+        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
+        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
+        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
+        bias_t_7*(W_2_t_4 + W_2_t_5)
+    )
+    # (rrrrrr-A3) acceleration of the connection point
     S_ddot_tip_x = (
     S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
         S_ddot_z*axis_x_rrrrrr_axes5_z
@@ -6852,37 +5787,26 @@ def _required_rrrrrr(c, k, x, s, f):
     rel_x = S_ddot_tip_x - bias_x
     rel_y = S_ddot_tip_y - bias_y
     rel_z = S_ddot_tip_z - bias_z
-    # (rrrrrr-A18) acceleration of joint 1
-    qdd_1_t = alpha_x*o_1_in_base_x + alpha_y*o_1_in_base_y + alpha_z*o_1_in_base_z
-    qdd_1 = (
-    qdd_1_t + inv_qd_1_t_44*(qd_1_t_18*rel_y + qd_1_t_8*rel_x - qd_1_t_22*rel_z) + nu_2*w_1_t_53 -
-        nu_1*w_1_t_52
+    # (rrrrrr-A20) acceleration of joint 1
+    qdd_1_t = etad_1*size
+    qdd_1_t_2 = etad_2*size
+    qdd_1_t_3 = (
+    inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
+        rel_y*w_1_t_84)
     )
-    # (rrrrrr-A20) acceleration of joint 2
-    qdd_2_t = alpha_x*o_2_in_base_x + alpha_y*o_2_in_base_y + alpha_z*o_2_in_base_z
-    qdd_2 = (
-    qdd_2_t + nu_1*w_2_t_4 - inv_qd_1_t_44*(qd_1_t_14*rel_x + qd_1_t_23*rel_y - qd_1_t_25*rel_z) -
-        nu_2*w_2_t_5
+    qdd_1_t_4 = (
+    inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
+        qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
     )
-    # (rrrrrr-A22) acceleration of joint 3
-    qdd_3_t = alpha_x*o_3_in_base_x + alpha_y*o_3_in_base_y + alpha_z*o_3_in_base_z
-    qdd_3 = (
-    qdd_3_t + inv_qd_1_t_44*(qd_1_t_16*rel_x + qd_1_t_26*rel_y + qd_1_t_27*rel_z) + nu_2*w_3_t_2 -
-        nu_1*w_3_t
+    qdd_1_t_5 = (
+    inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56 -
+        qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
     )
-    # (rrrrrr-A24) acceleration of joint 4
-    qdd_4_t = alpha_x*o_4_in_base_x + alpha_y*o_4_in_base_y + alpha_z*o_4_in_base_z
-    qdd_4 = (
-    qdd_4_t + inv_qd_1_t_44*(qd_1_t_35*rel_x + qd_1_t_37*rel_y - qd_1_t_38*rel_z) + nu_2*w_4_t_2 -
-        nu_1*w_4_t
+    qdd_1_t_6 = (
+    inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 + qdd_1_t_4*w_1_t_42
+        + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
     )
-    # (rrrrrr-A26) acceleration of joint 5
-    qdd_5_t = alpha_x*o_5_in_base_x + alpha_y*o_5_in_base_y + alpha_z*o_5_in_base_z
-    qdd_5 = (
-    qdd_5_t + inv_qd_1_t_44*(qd_1_t_40*rel_y + qd_1_t_42*rel_z - qd_1_t_39*rel_x) + nu_2*w_5_t_2 -
-        nu_1*w_5_t
-    )
-    # (rrrrrr-N33) acceleration of the reference point of link 5, less gravity
+    # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
     acc_5_x = (
     S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
         axis_x_rrrrrr_axes5_z*gravity_z
@@ -6895,54 +5819,55 @@ def _required_rrrrrr(c, k, x, s, f):
     S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
         axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
     )
-    # (rrrrrr-A28) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2_t*qdd_1
+    # (rrrrrr-A30) angular acceleration of link 1
+    alpha_1_t = qdd_1_t_5*s_2
+    alpha_1_t_2 = c_2_t*qdd_1_t_5
     # (rrrrrr-A34) angular acceleration of link 2
-    alpha_2_x = alpha_1_t - zeta_2_x
-    alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (rrrrrr-A38) acceleration tensor of link 2
-    B_2_xy = -W_2_xy - qdd_2
-    B_2_yx = qdd_2 - W_2_xy
-    B_2_zx = zeta_2_y - alpha_2_y
-    B_2_zy = alpha_2_x - zeta_2_x
-    # (rrrrrr-A62) acceleration of the origin of joint 3
-    a_o3_t = B_2_yx*rrrrrr_joint3_offset_x
-    a_o3_t_2 = B_2_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A40) angular acceleration of link 3
-    alpha_3_x = zeta_3_x + alpha_2_x*c_3 + alpha_2_y*s_3
-    alpha_3_y = alpha_2_y*c_3 - zeta_3_y - alpha_2_x*s_3
-    alpha_3_z = qdd_2 + qdd_3
-    # (rrrrrr-A44) acceleration tensor of link 3
+    alpha_2_x = zeta_2_x - alpha_1_t
+    alpha_2_y = alpha_1_t_2 + zeta_2_y
+    # (rrrrrr-A36) acceleration tensor of link 2
+    B_2_xy = -W_2_xy - qdd_1_t_4
+    B_2_yx = qdd_1_t_4 - W_2_xy
+    B_2_zx = -alpha_2_y - zeta_2_y
+    B_2_zy = alpha_2_x + zeta_2_x
+    # (rrrrrr-A54) acceleration of the origin of joint 3
+    a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
+    a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
+    a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
+    # (rrrrrr-A38) angular acceleration of link 3
+    alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
+    alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
+    alpha_3_z = qdd_1_t_3 + qdd_1_t_4
+    # (rrrrrr-A40) acceleration tensor of link 3
     B_3_xy = W_3_xy - alpha_3_z
     B_3_xz = W_3_xz + alpha_3_y
     B_3_yx = W_3_xy + alpha_3_z
     B_3_yz = W_3_yz - alpha_3_x
     B_3_zx = W_3_xz - alpha_3_y
     B_3_zy = W_3_yz + alpha_3_x
-    # (rrrrrr-A62) acceleration of the origin of joint 3
-    a_o3_r0_x = a_o3_t*s_3 - a_o3_o_t*c_3
-    a_o3_r0_y = a_o3_o_t*s_3 + a_o3_t*c_3
-    # (rrrrrr-A66) acceleration of the origin of joint 4
+    # (rrrrrr-A54) acceleration of the origin of joint 3
+    a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
+    a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
+    # (rrrrrr-A56) acceleration of the origin of joint 4
     a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
     a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
-    a_o4_z = a_o3_t_2 + B_3_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N23) acceleration of the reference point of link 4, less gravity
+    a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
+    # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
     acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
     acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
     acc_4_z = a_o4_x - g_r4_x
-    # (rrrrrr-A46) angular acceleration of link 4
-    alpha_4_x = zeta_4_x + alpha_3_z*s_4 - alpha_3_y*c_4_t
-    alpha_4_y = -zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
-    alpha_4_z = alpha_3_x + qdd_4
-    # (rrrrrr-A50) acceleration tensor of link 4
+    # (rrrrrr-A42) angular acceleration of link 4
+    alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
+    alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
+    alpha_4_z = alpha_3_x + qdd_1_t_6
+    # (rrrrrr-A44) acceleration tensor of link 4
     B_4_xy = W_4_xy - alpha_4_z
     B_4_xz = W_4_xz + alpha_4_y
     B_4_yx = W_4_xy + alpha_4_z
     B_4_yz = W_4_yz - alpha_4_x
     B_4_zx = W_4_xz - alpha_4_y
     B_4_zy = W_4_yz + alpha_4_x
-    # (rrrrrr-N51) inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
     mu_4_x = (
     B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
         W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
@@ -6955,18 +5880,21 @@ def _required_rrrrrr(c, k, x, s, f):
     B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
         B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
     )
-    # (rrrrrr-A52) angular acceleration of link 5
+    # (rrrrrr-A46) angular acceleration of link 5
     alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
     alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
-    alpha_5_z = alpha_4_x + qdd_5
-    # (rrrrrr-A56) acceleration tensor of link 5
+    alpha_5_z = (
+    alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
+        rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
+    )
+    # (rrrrrr-A50) acceleration tensor of link 5
     B_5_xy = W_5_xy - alpha_5_z
     B_5_xz = W_5_xz + alpha_5_y
     B_5_yx = W_5_xy + alpha_5_z
     B_5_yz = W_5_yz - alpha_5_x
     B_5_zx = W_5_xz - alpha_5_y
     B_5_zy = W_5_yz + alpha_5_x
-    # (rrrrrr-N41) inertia moment of the links that turn with link 5, about their reference points
+    # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
     mu_5_x = (
     B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
         B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
@@ -6979,19 +5907,19 @@ def _required_rrrrrr(c, k, x, s, f):
     B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
         B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
     )
-    # (rrrrrr-N55) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+    # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
     N_4_x = mu_4_x + mu_5_z
     N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
     N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
-    # (rrrrrr-N29) inertia force of link 4 less its weight
+    # (rrrrrr-N19) inertia force of link 4 less its weight
     f_4_x = B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
     f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
     f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-    # (rrrrrr-N13) acceleration of the reference point of link 3, less gravity
+    # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
     acc_3_x = a_o3_r0_x - g_r4_x
     acc_3_y = a_o3_r0_y - g_r4_y
-    acc_3_z = a_o3_t_2 - g_r1_x
-    # (rrrrrr-N65) inertia moment of the links that turn with link 3, about their reference points
+    acc_3_z = a_o3_t_3 - g_r1_x
+    # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
         B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
@@ -7004,70 +5932,71 @@ def _required_rrrrrr(c, k, x, s, f):
     B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
         B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
     )
-    # (rrrrrr-N29) inertia force of link 4 less its weight
+    # (rrrrrr-N19) inertia force of link 4 less its weight
     f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
     f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
-    # (rrrrrr-N69) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_x = N_4_z + mu_3_x
     N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
     N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
-    # (rrrrrr-N19) inertia force of link 3 less its weight
+    # (rrrrrr-N13) inertia force of link 3 less its weight
     f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
     f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
     f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-    # (rrrrrr-N73) inertia force of the links from 3 outwards, the last link left out
+    # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
     T_3_x = f_3_x + f_4_z
     T_3_y = f_3_y + f_4_r0_x
     T_3_z = f_3_z + f_4_r0_y
-    # (rrrrrr-N83) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
-    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_t +
-        g_r3_y*h_2_z - B_2_zx*J_2_xy - g_r1_x*h_2_y
+    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
+        - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
     )
     mu_2_y = (
-    B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) -
-        Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
+    B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx -
+        J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
     )
     mu_2_z = (
-    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_xz*alpha_1_t + g_r3_x*h_2_y -
-        B_2_xy*Sigma_2_yy - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
+    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
+        B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
     )
-    # (rrrrrr-N87) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
     N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
     N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
-    # (rrrrrr-N101) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N105) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
+    mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+    # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
-    # (rrrrrr-N113) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_t = (
-    N_2_z*w_1_t_33 + N_4_z*(rrrrrr_platform_joint_offset_x*(w_1_t_12*w_1_t_5 - w_1_t_15*w_1_t_7) -
-        end_p1_r8_y*w_1_t_35) + mu_5_z*(n_m2_t*w_1_t_35 + v_4_z*(w_1_t_36*w_1_t_5 -
-        w_1_t_18*w_1_t_7) - n_m1_r0_y*(v_1_y*w_1_t_12 + w_1_t_21*w_1_t_7 - v_1_z*w_1_t_36)) -
-        N_1_z*(end_p1_r8_y*(n_m1_r0_y*w_1_t_21 + v_4_z*w_1_t_18) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_26 + w_1_t_30*w_1_t_8 - w_1_t_28*w_1_t_6)) -
-        N_3_z*w_1_t_34
+    # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
+    G_t = inv_w_1_t_69*mu_5_z
+    G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
+    G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
+    G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
+    G_t_5 = (
+    inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
     )
-    G_t_2 = (
-    N_1_z*(n_m1_r0_y*w_1_t_46 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_10) +
-        N_3_z*(n_m1_r0_y*w_1_t_50 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_43) +
-        N_4_z*(end_p1_r8_y*w_1_t_20 + rrrrrr_platform_joint_offset_x*w_1_t_11) +
-        mu_5_z*(n_m1_r0_y*w_1_t_51 - n_m2_t*w_1_t_20) - N_2_z*w_1_t_49
+    G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
+    G_t_7 = (
+    size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
     )
-    # (rrrrrr-N121) leg force on the platform without actuation and without the mass at the connection point
-    c_x = G_t*inv_w_1_t_113 + h_5_x*(W_5_t_2 + W_5_t_3) - B_5_xy*h_5_y - B_5_xz*h_5_z
+    # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
+    c_x = (
+    G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z - G_t_5*w_1_t_83
+    )
     c_y = (
-    h_5_y*(W_5_t + W_5_t_3) + inv_w_1_t_113*(N_1_z*end_p1_r8_y*w_1_t_37 +
-        N_3_z*end_p1_r8_y*w_1_t_45 + N_4_z*end_p1_r8_y*w_1_t_16 - N_2_z*w_1_t_42 -
-        mu_5_z*w_1_t_17) - B_5_yx*h_5_x - B_5_yz*h_5_z
+    G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
+        G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
     )
-    c_z = h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x - B_5_zy*h_5_y - G_t_2*inv_w_1_t_113
-    # (rrrrrr-N117) moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_x = N_1_z*o_1_t + N_3_z*o_3_t + N_4_z*o_4_t + mu_5_z*o_5_t - N_2_z*o_2_t
-    G_m_y = N_1_z*o_1_y + N_2_z*o_2_y + N_3_z*o_3_y + N_4_z*o_4_y + mu_5_z*o_5_y
-    G_m_z = N_1_z*o_1_t_2 + N_3_z*o_3_t_2 + N_4_z*o_4_t_2 + mu_5_z*o_5_t_2 - N_2_z*o_2_t_2
-    # (rrrrrr-N121) leg force on the platform without actuation and without the mass at the connection point
+    c_z = (
+    G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x -
+        B_5_zy*h_5_y - G_t_5*w_1_t_85
+    )
+    # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_t = G_t_6*end_p1_r8_y
+    G_m_t_2 = G_t_7*end_p1_r8_y
+    G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
+    # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
     c_in_base_x = (
     axis_x_rrrrrr_axes5_x*c_x + axis_y_rrrrrr_axes5_in_base_x*c_y +
         axis_z_rrrrrr_axes5_in_base_x*c_z
@@ -7082,18 +6011,31 @@ def _required_rrrrrr(c, k, x, s, f):
     )
     # (E5) moment that actuators and external wrench must give
     R_a_t = (
-    c_in_base_z*q_in_base_y - G_m_x*axis_x_rrrrrr_axes5_x - G_m_y*axis_y_rrrrrr_axes5_in_base_x -
-        G_m_z*axis_z_rrrrrr_axes5_in_base_x - c_in_base_y*q_in_base_z
+    G_m_t_2*axis_z_rrrrrr_axes5_in_base_x + c_in_base_z*q_in_base_y - G_m_t*axis_x_rrrrrr_axes5_x
+        - G_m_y*axis_y_rrrrrr_axes5_in_base_x - c_in_base_y*q_in_base_z
     )
     R_a_t_2 = (
-    c_in_base_x*q_in_base_z - G_m_x*axis_x_rrrrrr_axes5_y - G_m_y*axis_y_rrrrrr_axes5_in_base_y -
-        G_m_z*axis_z_rrrrrr_axes5_in_base_y - c_in_base_z*q_in_base_x
+    G_m_t_2*axis_z_rrrrrr_axes5_in_base_y + c_in_base_x*q_in_base_z - G_m_t*axis_x_rrrrrr_axes5_y
+        - G_m_y*axis_y_rrrrrr_axes5_in_base_y - c_in_base_z*q_in_base_x
     )
     R_a_t_3 = (
-    c_in_base_y*q_in_base_x - G_m_x*axis_x_rrrrrr_axes5_z - G_m_y*axis_y_rrrrrr_axes5_in_base_z -
-        G_m_z*axis_z_rrrrrr_axes5_in_base_z - c_in_base_x*q_in_base_y
+    G_m_t_2*axis_z_rrrrrr_axes5_in_base_z + c_in_base_y*q_in_base_x - G_m_t*axis_x_rrrrrr_axes5_z
+        - G_m_y*axis_y_rrrrrr_axes5_in_base_z - c_in_base_x*q_in_base_y
     )
-    ok = (abs(w_1_t_24) > _TOLERANCE * w_1_t) & (abs(-qd_1_t_17) > _TOLERANCE * w_1_t)
+    # (M8) moment of the column's unit force about the platform origin
+    H_a_2_x = (
+    axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 +
+        q_in_base_y*w_2_in_base_z - axis_x_rrrrrr_axes5_x*o_2_t - q_in_base_z*w_2_in_base_y
+    )
+    H_a_2_y = (
+    axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 +
+        q_in_base_z*w_2_in_base_x - axis_x_rrrrrr_axes5_y*o_2_t - q_in_base_x*w_2_in_base_z
+    )
+    H_a_2_z = (
+    axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 +
+        q_in_base_x*w_2_in_base_y - axis_x_rrrrrr_axes5_z*o_2_t - q_in_base_y*w_2_in_base_x
+    )
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
     return (
     ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (w_2_in_base_x,
         w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y, H_a_2_z,),
@@ -7130,7 +6072,7 @@ def _inverse_kinematics_rrrrrr(c, k, x, s, f):
     return (ok, (), (q_1, q_2, q_3, q_4, q_5,),)
 
 
-# joint_rates: 3000 mul, 1674 add, 12 div, 0 sqrt, 60 trig
+# joint_rates: 2304 mul, 1392 add, 30 div, 30 sqrt, 60 trig
 def _joint_rates_before(c, X, V, q, f):
     X_3 = X[3]
     X_4 = X[4]
@@ -7181,6 +6123,7 @@ def _joint_rates_before(c, X, V, q, f):
 
 
 def _joint_rates_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     (
@@ -7190,7 +6133,7 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
         rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -7277,10 +6220,10 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -7300,9 +6243,9 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -7367,92 +6310,106 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_12 = v_1_x*(v_2_z*w_1_t_8 - v_3_z*w_1_t_8) + w_1_t_11*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_13 = v_1_x*(v_2_z*w_1_t_6 - v_3_z*w_1_t_6) + w_1_t_11*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_14 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_15 = v_1_x*(v_2_y*v_3_z - v_2_z*v_3_y) + v_1_z*w_1_t_14 - v_1_y*w_1_t_11
-    w_1_t_16 = (
-    n_m1_r0_y*w_1_t_15 + v_4_z*(v_1_x*(v_2_y*w_1_t_6 - v_3_y*w_1_t_6) + w_1_t_14*w_1_t_5 -
-        v_1_y*w_1_t_10)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_17 = (
-    end_p1_r8_y*w_1_t_16 + rrrrrr_platform_joint_offset_x*(n_m2_t*w_1_t_13 +
-        v_4_z*(w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7) - n_m1_r0_y*w_1_t_12)
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_18 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_19 = v_1_z*w_1_t_18
-    inv_w_1_t_113 = 1.0/w_1_t_17
-    w_1_t_20 = v_1_x*w_1_t_6
-    w_1_t_21 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_22 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_23 = v_1_x*w_1_t_8
-    w_1_t_24 = (
-    inv_w_1_t_113*(v_4_z*(end_p1_r8_y*w_1_t_14 + rrrrrr_platform_joint_offset_x*w_1_t_9) +
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_11)
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_25 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*(n_m1_r0_y*w_1_t_11 + v_4_z*w_1_t_10)
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = (
-    inv_w_1_t_113*(v_4_z*(end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_23 - v_3_x*w_1_t_7)) +
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_21)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_2_t_2 = (
-    inv_w_1_t_113*rrrrrr_platform_joint_offset_x*(n_m1_r0_y*w_1_t_21 + v_4_z*(w_1_t_20 -
-        v_3_x*w_1_t_5))
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
     )
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = (
-    inv_w_1_t_113*(v_4_z*(end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_23 - v_2_x*w_1_t_7)) +
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_22)
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
     )
-    w_3_t_2 = (
-    inv_w_1_t_113*rrrrrr_platform_joint_offset_x*(n_m1_r0_y*w_1_t_22 + v_4_z*(w_1_t_20 -
-        v_2_x*w_1_t_5))
-    )
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_12 - end_p1_r8_y*w_1_t_15)
-    w_4_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_13
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = (
-    inv_w_1_t_113*(n_m2_t*w_1_t_15 + v_4_z*(v_1_x*(v_2_y*w_1_t_8 - v_3_y*w_1_t_8) +
-        w_1_t_14*w_1_t_7 - v_1_y*w_1_t_9))
-    )
-    w_5_t_2 = inv_w_1_t_113*w_1_t_16
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_24
-    o_1_t_2 = end_p1_r8_y*w_1_t_25
-    o_1_y = -end_p1_r6_x*w_1_t_25 - end_p1_r8_x*w_1_t_24
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t
-    o_2_t_2 = end_p1_r8_y*w_2_t_2
-    o_2_y = end_p1_r6_x*w_2_t_2 + end_p1_r8_x*w_2_t
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t
-    o_3_t_2 = end_p1_r8_y*w_3_t_2
-    o_3_y = -end_p1_r6_x*w_3_t_2 - end_p1_r8_x*w_3_t
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t
-    o_4_t_2 = end_p1_r8_y*w_4_t_2
-    o_4_y = -end_p1_r6_x*w_4_t_2 - end_p1_r8_x*w_4_t
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t
-    o_5_t_2 = end_p1_r8_y*w_5_t_2
-    o_5_y = -end_p1_r6_x*w_5_t_2 - end_p1_r8_x*w_5_t
+    inv_w_1_t_222 = 1.0/w_1_t_82
     # (M2) coupling block of M
     q_in_base_x = (
     R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
@@ -7467,15 +6424,6 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
     S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
     S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_1_t + axis_y_rrrrrr_axes5_in_base_x*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_1_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_1_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_1_y + axis_z_rrrrrr_axes5_in_base_y*o_1_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_1_t + axis_y_rrrrrr_axes5_in_base_z*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_1_t_2)
-    )
-    # (rrrrrr-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
     )
@@ -7487,100 +6435,46 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
     S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_dot_z*axis_z_rrrrrr_axes5_in_base_z
     )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t_2 = end_p1_r8_y*n_m1_r0_y
-    qd_1_t_3 = end_p1_r8_y*w_1_t_6
-    qd_1_t_4 = qd_1_t_3*v_4_z
-    qd_1_t_5 = qd_1_t_4 + qd_1_t_2*v_3_z
-    qd_1_t_6 = qd_1_t_4 + qd_1_t_2*v_2_z
-    qd_1_t_7 = v_3_z*w_1_t_18 - v_2_z*w_1_t_18
-    qd_1_t_8 = qd_1_t_6*v_3_y + qd_1_t_7*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_2_y
-    qd_1_t_9 = end_p1_r8_y*w_1_t_5
-    qd_1_t_10 = qd_1_t_2*v_1_z + qd_1_t_9*v_4_z
-    qd_1_t_11 = n_m2_t*w_1_t_5 - n_m1_r0_y*w_1_t_7
-    qd_1_t_12 = v_4_z*(w_1_t_5*w_1_t_8 - w_1_t_6*w_1_t_7)
-    qd_1_t_13 = qd_1_t_12 + qd_1_t_11*v_3_z - w_1_t_19
-    qd_1_t_14 = qd_1_t_10*v_3_y + qd_1_t_13*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_1_y
-    qd_1_t_15 = qd_1_t_12 + qd_1_t_11*v_2_z - w_1_t_19
-    qd_1_t_16 = qd_1_t_10*v_2_y + qd_1_t_15*rrrrrr_platform_joint_offset_x - qd_1_t_6*v_1_y
-    qd_1_t_17 = qd_1_t_16*v_3_x + qd_1_t_8*v_1_x - qd_1_t_14*v_2_x
-    qd_1_t_18 = rrrrrr_platform_joint_offset_x*w_1_t_18
-    qd_1_t_19 = qd_1_t_2*v_3_y - qd_1_t_18
-    qd_1_t_20 = qd_1_t_18 - qd_1_t_2*v_2_y
-    inv_qd_1_t_44 = 1.0/qd_1_t_17
-    qd_1_t_21 = qd_1_t_2*v_1_y - qd_1_t_11*rrrrrr_platform_joint_offset_x
-    qd_1_t_22 = rrrrrr_platform_joint_offset_x*w_1_t_8
-    qd_1_t_23 = qd_1_t_22 + end_p1_r8_y*v_3_y
-    qd_1_t_24 = qd_1_t_22 + end_p1_r8_y*v_2_y
-    qd_1_t_25 = qd_1_t_23*w_1_t_6 - qd_1_t_24*w_1_t_6
-    qd_1_t_26 = w_1_t_6*(end_p1_r8_y*v_1_y + rrrrrr_platform_joint_offset_x*w_1_t_7)
-    qd_1_t_27 = qd_1_t_23*w_1_t_5 - qd_1_t_26
-    qd_1_t_28 = qd_1_t_26 - qd_1_t_24*w_1_t_5
-    qd_1_t_29 = qd_1_t_3*v_1_z
-    qd_1_t_30 = (
-    S_dot_tip_x*(qd_1_t_27*v_2_z + qd_1_t_28*v_3_z - qd_1_t_25*v_1_z) +
-        S_dot_tip_y*(v_1_x*(qd_1_t_3*v_2_z - qd_1_t_3*v_3_z) + v_3_x*(qd_1_t_29 - qd_1_t_9*v_2_z)
-        - v_2_x*(qd_1_t_29 - qd_1_t_9*v_3_z)) - S_dot_tip_z*(qd_1_t_27*v_2_x + qd_1_t_28*v_3_x -
-        qd_1_t_25*v_1_x)
+    # (rrrrrr-A14) rate of moment direction 1
+    omega_tip_y = (
+    axis_y_rrrrrr_axes5_in_base_x*omega_x + axis_y_rrrrrr_axes5_in_base_y*omega_y +
+        axis_y_rrrrrr_axes5_in_base_z*omega_z
     )
-    qd_1_t_31 = v_1_y*w_1_t_18
-    qd_1_t_32 = (
-    S_dot_tip_y*(qd_1_t_15*v_3_x + qd_1_t_7*v_1_x - qd_1_t_13*v_2_x) +
-        S_dot_tip_z*(v_1_x*(v_2_y*w_1_t_18 - v_3_y*w_1_t_18) + v_3_x*(qd_1_t_31 - qd_1_t_11*v_2_y)
-        - v_2_x*(qd_1_t_31 - qd_1_t_11*v_3_y)) - S_dot_tip_x*(qd_1_t_15*v_3_y + qd_1_t_7*v_1_y -
-        qd_1_t_13*v_2_y)
+    # (rrrrrr-V35) rate of joint 1
+    qd_1_t = (
+    size*(end_p1_r8_y*(axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y +
+        axis_x_rrrrrr_axes5_z*omega_z) - end_p1_r8_x*omega_tip_y)
     )
-    qd_1 = (
-    qd_1_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_8 + S_dot_tip_y*(qd_1_t_5*v_2_x - qd_1_t_6*v_3_x) -
-        S_dot_tip_z*(qd_1_t_19*v_2_x + qd_1_t_20*v_3_x))
+    qd_1_t_2 = (
+    size*(end_p1_r6_x*omega_tip_y - end_p1_r8_y*(axis_z_rrrrrr_axes5_in_base_x*omega_x +
+        axis_z_rrrrrr_axes5_in_base_y*omega_y + axis_z_rrrrrr_axes5_in_base_z*omega_z))
     )
-    # (rrrrrr-V34) rate of joint 2
-    qd_2_t = (
-    omega_x*(axis_y_rrrrrr_axes5_in_base_x*o_2_y - axis_x_rrrrrr_axes5_x*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*o_2_t_2) + omega_y*(axis_y_rrrrrr_axes5_in_base_y*o_2_y -
-        axis_x_rrrrrr_axes5_y*o_2_t - axis_z_rrrrrr_axes5_in_base_y*o_2_t_2) +
-        omega_z*(axis_y_rrrrrr_axes5_in_base_z*o_2_y - axis_x_rrrrrr_axes5_z*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*o_2_t_2)
+    qd_1_t_3 = (
+    inv_w_1_t_222*(S_dot_tip_y*inv_w_1_t_222*w_1_t_78 + inv_w_1_t_222*qd_1_t*w_1_t_80 +
+        inv_w_1_t_222*qd_1_t_2*w_1_t_81 - S_dot_tip_x*inv_w_1_t_222*w_1_t_77 -
+        S_dot_tip_z*inv_w_1_t_222*w_1_t_79)
     )
-    qd_2 = (
-    qd_2_t - inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_14 + S_dot_tip_y*(qd_1_t_5*v_1_x - qd_1_t_10*v_3_x)
-        - S_dot_tip_z*(qd_1_t_19*v_1_x - qd_1_t_21*v_3_x))
+    qd_1_t_4 = (
+    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
     )
-    # (rrrrrr-V35) rate of joint 3
-    qd_3_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_3_t + axis_y_rrrrrr_axes5_in_base_x*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_3_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_3_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_3_y + axis_z_rrrrrr_axes5_in_base_y*o_3_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_3_t + axis_y_rrrrrr_axes5_in_base_z*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_3_t_2)
+    qd_1_t_5 = (
+    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
     )
-    qd_3 = (
-    qd_3_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_16 + S_dot_tip_y*(qd_1_t_6*v_1_x - qd_1_t_10*v_2_x)
-        + S_dot_tip_z*(qd_1_t_20*v_1_x + qd_1_t_21*v_2_x))
+    qd_1_t_6 = (
+    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
+        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
     )
-    # (rrrrrr-V36) rate of joint 4
-    qd_4_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_4_t + axis_y_rrrrrr_axes5_in_base_x*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_4_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_4_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_4_y + axis_z_rrrrrr_axes5_in_base_y*o_4_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_4_t + axis_y_rrrrrr_axes5_in_base_z*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_4_t_2)
+    qd_1_t_7 = (
+    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
+        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
     )
-    qd_4 = qd_4_t + inv_qd_1_t_44*qd_1_t_30
-    # (rrrrrr-V37) rate of joint 5
-    qd_5_t = (
-    omega_x*(axis_x_rrrrrr_axes5_x*o_5_t + axis_y_rrrrrr_axes5_in_base_x*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_5_t_2) + omega_y*(axis_x_rrrrrr_axes5_y*o_5_t +
-        axis_y_rrrrrr_axes5_in_base_y*o_5_y + axis_z_rrrrrr_axes5_in_base_y*o_5_t_2) +
-        omega_z*(axis_x_rrrrrr_axes5_z*o_5_t + axis_y_rrrrrr_axes5_in_base_z*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_5_t_2)
-    )
-    qd_5 = qd_5_t + inv_qd_1_t_44*qd_1_t_32
-    ok = (abs(w_1_t_17) > _TOLERANCE * w_1_t) & (abs(-qd_1_t_17) > _TOLERANCE * w_1_t)
-    return (ok, (), (qd_1, qd_2, qd_3, qd_4, qd_5,),)
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
+    return (ok, (), (qd_1_t_5, -qd_1_t_4, -qd_1_t_3, -qd_1_t_6, qd_1_t_7,),)
 
 
-# joint_accelerations: 4416 mul, 2664 add, 12 div, 0 sqrt, 60 trig
+# joint_accelerations: 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig
 def _joint_accelerations_before(c, X, V, A, q, f):
     X_3 = X[3]
     X_4 = X[4]
@@ -7644,6 +6538,7 @@ def _joint_accelerations_before(c, X, V, A, q, f):
 
 
 def _joint_accelerations_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     (
@@ -7653,7 +6548,7 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
         rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -7740,10 +6635,10 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -7763,9 +6658,9 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -7830,92 +6725,111 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_12 = v_1_x*(v_2_z*w_1_t_8 - v_3_z*w_1_t_8) + w_1_t_11*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_13 = v_1_x*(v_2_z*w_1_t_6 - v_3_z*w_1_t_6) + w_1_t_11*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_14 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_15 = v_1_x*(v_2_y*v_3_z - v_2_z*v_3_y) + v_1_z*w_1_t_14 - v_1_y*w_1_t_11
-    w_1_t_16 = (
-    n_m1_r0_y*w_1_t_15 + v_4_z*(v_1_x*(v_2_y*w_1_t_6 - v_3_y*w_1_t_6) + w_1_t_14*w_1_t_5 -
-        v_1_y*w_1_t_10)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_17 = (
-    end_p1_r8_y*w_1_t_16 + rrrrrr_platform_joint_offset_x*(n_m2_t*w_1_t_13 +
-        v_4_z*(w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7) - n_m1_r0_y*w_1_t_12)
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_18 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_19 = v_1_z*w_1_t_18
-    inv_w_1_t_113 = 1.0/w_1_t_17
-    w_1_t_20 = v_1_x*w_1_t_6
-    w_1_t_21 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_22 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_23 = v_1_x*w_1_t_8
-    w_1_t_24 = (
-    inv_w_1_t_113*(v_4_z*(end_p1_r8_y*w_1_t_14 + rrrrrr_platform_joint_offset_x*w_1_t_9) +
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_11)
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_25 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*(n_m1_r0_y*w_1_t_11 + v_4_z*w_1_t_10)
-    # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = (
-    inv_w_1_t_113*(v_4_z*(end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_23 - v_3_x*w_1_t_7)) +
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_21)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_2_t_2 = (
-    inv_w_1_t_113*rrrrrr_platform_joint_offset_x*(n_m1_r0_y*w_1_t_21 + v_4_z*(w_1_t_20 -
-        v_3_x*w_1_t_5))
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
     )
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = (
-    inv_w_1_t_113*(v_4_z*(end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_23 - v_2_x*w_1_t_7)) +
-        n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_22)
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
     )
-    w_3_t_2 = (
-    inv_w_1_t_113*rrrrrr_platform_joint_offset_x*(n_m1_r0_y*w_1_t_22 + v_4_z*(w_1_t_20 -
-        v_2_x*w_1_t_5))
-    )
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_12 - end_p1_r8_y*w_1_t_15)
-    w_4_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_13
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = (
-    inv_w_1_t_113*(n_m2_t*w_1_t_15 + v_4_z*(v_1_x*(v_2_y*w_1_t_8 - v_3_y*w_1_t_8) +
-        w_1_t_14*w_1_t_7 - v_1_y*w_1_t_9))
-    )
-    w_5_t_2 = inv_w_1_t_113*w_1_t_16
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_24
-    o_1_t_2 = end_p1_r8_y*w_1_t_25
-    o_1_y = -end_p1_r6_x*w_1_t_25 - end_p1_r8_x*w_1_t_24
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t
-    o_2_t_2 = end_p1_r8_y*w_2_t_2
-    o_2_y = end_p1_r6_x*w_2_t_2 + end_p1_r8_x*w_2_t
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t
-    o_3_t_2 = end_p1_r8_y*w_3_t_2
-    o_3_y = -end_p1_r6_x*w_3_t_2 - end_p1_r8_x*w_3_t
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t
-    o_4_t_2 = end_p1_r8_y*w_4_t_2
-    o_4_y = -end_p1_r6_x*w_4_t_2 - end_p1_r8_x*w_4_t
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t
-    o_5_t_2 = end_p1_r8_y*w_5_t_2
-    o_5_y = -end_p1_r6_x*w_5_t_2 - end_p1_r8_x*w_5_t
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    w_1_t_83 = inv_w_1_t_222*w_1_t_77
+    w_1_t_84 = inv_w_1_t_222*w_1_t_78
+    w_1_t_85 = inv_w_1_t_222*w_1_t_79
+    w_1_t_86 = inv_w_1_t_222*w_1_t_80
+    w_1_t_87 = inv_w_1_t_222*w_1_t_81
     # (M2) coupling block of M
     q_in_base_x = (
     R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
@@ -7933,22 +6847,6 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_1_t + axis_y_rrrrrr_axes5_in_base_x*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_1_t_2
-    )
-    o_1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_1_t + axis_y_rrrrrr_axes5_in_base_y*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_1_t_2
-    )
-    o_1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_1_t + axis_y_rrrrrr_axes5_in_base_z*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_1_t_2
-    )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t = o_1_in_base_x*omega_x + o_1_in_base_y*omega_y + o_1_in_base_z*omega_z
-    # (rrrrrr-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
     )
@@ -7960,175 +6858,7 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_dot_z*axis_z_rrrrrr_axes5_in_base_z
     )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t_2 = end_p1_r8_y*n_m1_r0_y
-    qd_1_t_3 = end_p1_r8_y*w_1_t_6
-    qd_1_t_4 = qd_1_t_3*v_4_z
-    qd_1_t_5 = qd_1_t_4 + qd_1_t_2*v_3_z
-    qd_1_t_6 = qd_1_t_4 + qd_1_t_2*v_2_z
-    qd_1_t_7 = v_3_z*w_1_t_18 - v_2_z*w_1_t_18
-    qd_1_t_8 = qd_1_t_6*v_3_y + qd_1_t_7*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_2_y
-    qd_1_t_9 = end_p1_r8_y*w_1_t_5
-    qd_1_t_10 = qd_1_t_2*v_1_z + qd_1_t_9*v_4_z
-    qd_1_t_11 = n_m2_t*w_1_t_5 - n_m1_r0_y*w_1_t_7
-    qd_1_t_12 = v_4_z*(w_1_t_5*w_1_t_8 - w_1_t_6*w_1_t_7)
-    qd_1_t_13 = qd_1_t_12 + qd_1_t_11*v_3_z - w_1_t_19
-    qd_1_t_14 = qd_1_t_10*v_3_y + qd_1_t_13*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_1_y
-    qd_1_t_15 = qd_1_t_12 + qd_1_t_11*v_2_z - w_1_t_19
-    qd_1_t_16 = qd_1_t_10*v_2_y + qd_1_t_15*rrrrrr_platform_joint_offset_x - qd_1_t_6*v_1_y
-    qd_1_t_17 = qd_1_t_16*v_3_x + qd_1_t_8*v_1_x - qd_1_t_14*v_2_x
-    qd_1_t_18 = qd_1_t_5*v_2_x - qd_1_t_6*v_3_x
-    qd_1_t_19 = rrrrrr_platform_joint_offset_x*w_1_t_18
-    qd_1_t_20 = qd_1_t_2*v_3_y - qd_1_t_19
-    qd_1_t_21 = qd_1_t_19 - qd_1_t_2*v_2_y
-    qd_1_t_22 = qd_1_t_20*v_2_x + qd_1_t_21*v_3_x
-    inv_qd_1_t_44 = 1.0/qd_1_t_17
-    qd_1_t_23 = qd_1_t_5*v_1_x - qd_1_t_10*v_3_x
-    qd_1_t_24 = qd_1_t_2*v_1_y - qd_1_t_11*rrrrrr_platform_joint_offset_x
-    qd_1_t_25 = qd_1_t_20*v_1_x - qd_1_t_24*v_3_x
-    qd_1_t_26 = qd_1_t_6*v_1_x - qd_1_t_10*v_2_x
-    qd_1_t_27 = qd_1_t_21*v_1_x + qd_1_t_24*v_2_x
-    qd_1_t_28 = rrrrrr_platform_joint_offset_x*w_1_t_8
-    qd_1_t_29 = qd_1_t_28 + end_p1_r8_y*v_3_y
-    qd_1_t_30 = qd_1_t_28 + end_p1_r8_y*v_2_y
-    qd_1_t_31 = qd_1_t_29*w_1_t_6 - qd_1_t_30*w_1_t_6
-    qd_1_t_32 = w_1_t_6*(end_p1_r8_y*v_1_y + rrrrrr_platform_joint_offset_x*w_1_t_7)
-    qd_1_t_33 = qd_1_t_29*w_1_t_5 - qd_1_t_32
-    qd_1_t_34 = qd_1_t_32 - qd_1_t_30*w_1_t_5
-    qd_1_t_35 = qd_1_t_33*v_2_z + qd_1_t_34*v_3_z - qd_1_t_31*v_1_z
-    qd_1_t_36 = qd_1_t_3*v_1_z
-    qd_1_t_37 = (
-    v_1_x*(qd_1_t_3*v_2_z - qd_1_t_3*v_3_z) + v_3_x*(qd_1_t_36 - qd_1_t_9*v_2_z) -
-        v_2_x*(qd_1_t_36 - qd_1_t_9*v_3_z)
-    )
-    qd_1_t_38 = qd_1_t_33*v_2_x + qd_1_t_34*v_3_x - qd_1_t_31*v_1_x
-    qd_1_t_39 = qd_1_t_15*v_3_y + qd_1_t_7*v_1_y - qd_1_t_13*v_2_y
-    qd_1_t_40 = qd_1_t_15*v_3_x + qd_1_t_7*v_1_x - qd_1_t_13*v_2_x
-    qd_1_t_41 = v_1_y*w_1_t_18
-    qd_1_t_42 = (
-    v_1_x*(v_2_y*w_1_t_18 - v_3_y*w_1_t_18) + v_3_x*(qd_1_t_41 - qd_1_t_11*v_2_y) -
-        v_2_x*(qd_1_t_41 - qd_1_t_11*v_3_y)
-    )
-    qd_1 = (
-    qd_1_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_8 + S_dot_tip_y*qd_1_t_18 - S_dot_tip_z*qd_1_t_22)
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y - axis_x_rrrrrr_axes5_x*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*o_2_t_2
-    )
-    o_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y - axis_x_rrrrrr_axes5_y*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*o_2_t_2
-    )
-    o_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y - axis_x_rrrrrr_axes5_z*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*o_2_t_2
-    )
-    # (rrrrrr-V34) rate of joint 2
-    qd_2_t = o_2_in_base_x*omega_x + o_2_in_base_y*omega_y + o_2_in_base_z*omega_z
-    qd_2 = (
-    qd_2_t - inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_14 + S_dot_tip_y*qd_1_t_23 - S_dot_tip_z*qd_1_t_25)
-    )
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2_t*qd_1
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_3_t + axis_y_rrrrrr_axes5_in_base_x*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_3_t_2
-    )
-    o_3_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_3_t + axis_y_rrrrrr_axes5_in_base_y*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_3_t_2
-    )
-    o_3_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_3_t + axis_y_rrrrrr_axes5_in_base_z*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_3_t_2
-    )
-    # (rrrrrr-V35) rate of joint 3
-    qd_3_t = o_3_in_base_x*omega_x + o_3_in_base_y*omega_y + o_3_in_base_z*omega_z
-    qd_3 = (
-    qd_3_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_16 + S_dot_tip_y*qd_1_t_26 + S_dot_tip_z*qd_1_t_27)
-    )
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = -c_3*zeta_2_x - s_3*zeta_2_y
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x + omega_2_r0_y*qd_3
-    beta_3_y = zeta_2_r0_y - omega_2_r0_x*qd_3
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_z = qd_2 + qd_3
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_4_t + axis_y_rrrrrr_axes5_in_base_x*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_4_t_2
-    )
-    o_4_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_4_t + axis_y_rrrrrr_axes5_in_base_y*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_4_t_2
-    )
-    o_4_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_4_t + axis_y_rrrrrr_axes5_in_base_z*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_4_t_2
-    )
-    # (rrrrrr-V36) rate of joint 4
-    qd_4_t = o_4_in_base_x*omega_x + o_4_in_base_y*omega_y + o_4_in_base_z*omega_z
-    qd_4 = (
-    qd_4_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_35 + S_dot_tip_y*qd_1_t_37 - S_dot_tip_z*qd_1_t_38)
-    )
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = omega_3_r1_y*qd_4 - beta_3_t
-    beta_4_y = -beta_3_t_2 - omega_3_r1_x*qd_4
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_4
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_5_t + axis_y_rrrrrr_axes5_in_base_x*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_5_t_2
-    )
-    o_5_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_5_t + axis_y_rrrrrr_axes5_in_base_y*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_5_t_2
-    )
-    o_5_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_5_t + axis_y_rrrrrr_axes5_in_base_z*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_5_t_2
-    )
-    # (rrrrrr-V37) rate of joint 5
-    qd_5_t = o_5_in_base_x*omega_x + o_5_in_base_y*omega_y + o_5_in_base_z*omega_z
-    qd_5 = (
-    qd_5_t + inv_qd_1_t_44*(S_dot_tip_y*qd_1_t_40 + S_dot_tip_z*qd_1_t_42 - S_dot_tip_x*qd_1_t_39)
-    )
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + omega_4_r1_y*qd_5
-    beta_5_y = beta_4_r1_y - omega_4_r1_x*qd_5
-    # (rrrrrr-V46) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_5
     # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t = end_p1_r8_y*omega_4_r1_y
     omega_tip_x = (
     axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
     )
@@ -8140,27 +6870,9 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
         axis_z_rrrrrr_axes5_in_base_z*omega_z
     )
+    nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
     nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1
-    omega_1_y = e_1_r6_y*qd_1
-    omega_1_z = qd_1*v_1_t
+    nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
     bias_t = rrrrrr_joint2_offset_x*s_2
     bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
@@ -8170,65 +6882,116 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     bias_t_4 = d_2_r2_y*s_4
     d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
     d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = bias_t_3*omega_1_y - d_2_r6_y*omega_1_z
-    bias_t_6 = d_2_r6_x*omega_1_z - bias_t_3*omega_1_x
-    bias_t_7 = d_2_r6_y*omega_1_x - d_2_r6_x*omega_1_y
+    bias_t_5 = c_3*rrrrrr_joint3_offset_x
+    bias_t_6 = rrrrrr_joint3_offset_x*s_3
+    bias_t_7 = bias_t_6*c_4_t
+    bias_t_8 = bias_t_6*s_4
+    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+    bias_t_9 = rrrrrr_joint4_offset_x*s_5
+    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+    bias_t_11 = rrrrrr_joint5_offset_x*s_5
+    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+    # (rrrrrr-V35) rate of joint 1
+    qd_1_t = nd_m1_t_3*size
+    qd_1_t_2 = nd_m1_t*size
+    qd_1_t_3 = (
+    inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
+        S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+    )
+    qd_1_t_4 = (
+    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+    )
+    qd_1_t_5 = (
+    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+    )
+    qd_1_t_6 = (
+    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
+        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+    )
+    qd_1_t_7 = (
+    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
+        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+    )
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_t = qd_1_t_5*s_2
+    omega_1_t_2 = c_2_t*qd_1_t_5
     # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_8 = c_3*rrrrrr_joint3_offset_x
-    bias_t_9 = rrrrrr_joint3_offset_x*s_3
-    bias_t_10 = bias_t_9*c_4_t
-    bias_t_11 = bias_t_9*s_4
-    d_3_r4_x = bias_t_8*s_5 - bias_t_11*c_5_t
-    d_3_r4_y = -bias_t_11*s_5 - bias_t_8*c_5_t
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_x = omega_1_x + qd_2*v_2_t
-    omega_2_y = omega_1_y + qd_2*v_2_t_2
-    omega_2_z = qd_2*s_4 - omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_12 = bias_t_10*omega_2_y - d_3_r4_y*omega_2_z
-    bias_t_13 = d_3_r4_x*omega_2_z - bias_t_10*omega_2_x
-    bias_t_14 = d_3_r4_y*omega_2_x - d_3_r4_x*omega_2_y
-    bias_t_15 = rrrrrr_joint4_offset_x*s_5
-    bias_t_16 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_17 = bias_t_16*omega_3_r1_x
-    bias_t_18 = bias_t_15*omega_3_r1_x
-    bias_t_19 = bias_t_15*omega_3_r3_y + bias_t_16*omega_3_r3_x
-    bias_t_20 = rrrrrr_joint5_offset_x*s_5
-    bias_t_21 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_22 = bias_t_21*omega_3_r1_x
-    bias_t_23 = bias_t_20*omega_3_r1_x
-    bias_t_24 = bias_t_20*omega_4_r1_y + bias_t_21*omega_4_r1_x
-    bias_t_25 = omega_5_z*rrrrrr_platform_joint_offset_x
-    bias_t_26 = omega_4_r1_y*rrrrrr_platform_joint_offset_x
-    bias_x = (
-    beta_4_x*bias_t_21 + bias_t_10*zeta_2_r4_y + bias_t_14*omega_2_y + bias_t_7*omega_1_y +
-        d_3_r4_y*zeta_2_t - beta_3_t*bias_t_16 - bias_t_13*omega_2_z - bias_t_18*omega_3_r1_x -
-        bias_t_19*omega_3_r3_y - bias_t_23*omega_3_r1_x - bias_t_24*omega_4_r1_y -
-        bias_t_25*omega_5_z - bias_t_26*omega_4_r1_y - bias_t_6*omega_1_z
+    zeta_2_x = omega_1_t_2*qd_1_t_4
+    zeta_2_y = omega_1_t*qd_1_t_4
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
+    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+    beta_3_x = zeta_2_r0_x - omega_2_r0_y*qd_1_t_3
+    beta_3_y = zeta_2_r0_y + omega_2_r0_x*qd_1_t_3
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_z = -qd_1_t_3 - qd_1_t_4
+    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+    beta_3_t = beta_3_y*c_4_t
+    beta_3_t_2 = beta_3_y*s_4
+    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+    beta_4_x = -beta_3_t - omega_3_r1_y*qd_1_t_6
+    beta_4_y = omega_3_r1_x*qd_1_t_6 - beta_3_t_2
+    # (rrrrrr-V46) angular velocity of link 4
+    omega_4_z = omega_2_r0_x - qd_1_t_6
+    omega_4_t = c_5_t*omega_3_r1_y
+    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+    omega_4_t_2 = omega_3_r1_y*s_5
+    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+    beta_4_t = beta_3_x*s_5
+    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+    beta_4_t_2 = beta_3_x*c_5_t
+    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+    beta_5_x = beta_4_r1_x + omega_4_r1_y*qd_1_t_7
+    beta_5_y = beta_4_r1_y - omega_4_r1_x*qd_1_t_7
+    # (rrrrrr-V48) angular velocity of link 5
+    omega_5_z = omega_3_r1_x + qd_1_t_7
+    # (rrrrrr-A14) rate of moment direction 1
+    nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
+    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+    nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
+    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+    nu_1_t_2 = omega_4_r1_x - omega_tip_x
+    nu_1_t_3 = omega_4_r1_y - omega_tip_y
+    nu_1_t_4 = omega_5_z - omega_tip_z
+    nu_1_t_5 = (
+    nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
     )
-    bias_y = (
-    beta_4_x*bias_t_20 + beta_4_x*rrrrrr_platform_joint_offset_x + bias_t_12*omega_2_z +
-        bias_t_17*omega_3_r1_x + bias_t_19*omega_3_r3_x + bias_t_22*omega_3_r1_x +
-        bias_t_24*omega_4_r1_x + bias_t_26*omega_4_r1_x + bias_t_5*omega_1_z - beta_3_t*bias_t_15
-        - bias_t_10*zeta_2_r4_x - bias_t_14*omega_2_x - bias_t_7*omega_1_x - d_3_r4_x*zeta_2_t
+    nu_1 = nu_1_t - nu_1_t_5
+    # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
+    alpha_tip_y = (
+    alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
+        alpha_z*axis_y_rrrrrr_axes5_in_base_z
     )
-    bias_z = (
-    bias_t_13*omega_2_x + bias_t_18*omega_3_r3_x + bias_t_23*omega_4_r1_x + bias_t_25*omega_4_r1_x
-        + bias_t_5*omega_1_y + d_3_r4_y*zeta_2_r4_x - beta_4_r1_x*bias_t_21 -
-        beta_4_r1_y*bias_t_20 - beta_5_y*rrrrrr_platform_joint_offset_x - bias_t_12*omega_2_y -
-        bias_t_15*(beta_3_t_2*s_5 - beta_4_t_2) - bias_t_16*(beta_4_t + beta_3_t_2*c_5_t) -
-        bias_t_17*omega_3_r3_y - bias_t_22*omega_4_r1_y - bias_t_6*omega_1_x -
-        d_3_r4_x*zeta_2_r4_y
+    etad_1_t = (
+    end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
+        alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
     )
+    etad_1 = nu_1 - etad_1_t
+    # (rrrrrr-A16) rate of moment direction 2
+    nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
+    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+    nu_2 = nu_2_t - nu_2_t_2
+    # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
+    etad_2_t = (
+    alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
+        alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+    )
+    etad_2 = nu_2 - etad_2_t
     # (rrrrrr-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -8237,6 +7000,67 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+    # (rrrrrr-V47) centripetal tensor of link 4
+    W_4_t = omega_3_r1_x*omega_3_r1_x
+    # (rrrrrr-V49) centripetal tensor of link 5
+    W_5_t = omega_4_r1_y*omega_4_r1_y
+    W_5_xy = omega_4_r1_x*omega_4_r1_y
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_x = e_1_r6_x*qd_1_t_5
+    omega_1_y = e_1_r6_y*qd_1_t_5
+    omega_1_z = qd_1_t_5*v_1_t
+    # (rrrrrr-V41) centripetal tensor of link 1
+    W_1_t = omega_1_x*omega_1_x
+    W_1_t_2 = omega_1_y*omega_1_y
+    W_1_t_3 = omega_1_z*omega_1_z
+    W_1_xy = omega_1_x*omega_1_y
+    W_1_xz = omega_1_x*omega_1_z
+    W_1_yz = omega_1_y*omega_1_z
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_t = c_4_t*zeta_2_r0_y
+    zeta_2_t_2 = s_4*zeta_2_r0_y
+    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_x = omega_1_x - qd_1_t_4*v_2_t
+    omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
+    omega_2_z = -omega_1_z - qd_1_t_4*s_4
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t = omega_2_x*omega_2_x
+    W_2_t_2 = omega_2_y*omega_2_y
+    W_2_t_3 = omega_2_z*omega_2_z
+    W_2_xy = omega_2_x*omega_2_y
+    W_2_xz = omega_2_x*omega_2_z
+    W_2_yz = omega_2_y*omega_2_z
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_xy = omega_3_r3_x*omega_3_r3_y
+    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+    bias_t_13 = W_5_xy + beta_4_x
+    bias_x = (
+    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy +
+        zeta_2_t) - bias_t_10*(W_3_xy + beta_3_t) - bias_t_11*(W_4_t + W_5_t) - bias_t_12*(W_5_xy
+        - beta_4_x) - bias_t_9*(W_4_t + omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3)
+        - d_3_r4_x*(W_2_t_2 + W_2_t_3) - rrrrrr_platform_joint_offset_x*(W_5_t +
+        omega_5_z*omega_5_z)
+    )
+    bias_y = (
+    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + omega_4_r1_x*omega_4_r1_x) +
+        bias_t_13*rrrrrr_platform_joint_offset_x + bias_t_7*(W_2_yz - zeta_2_r4_x) +
+        bias_t_9*(W_3_xy - beta_3_t) + d_3_r4_x*(W_2_xy - zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) -
+        d_3_r4_y*(W_2_t + W_2_t_3)
+    )
+    bias_z = (
+    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
+        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) +
+        rrrrrr_platform_joint_offset_x*(omega_4_r1_x*omega_5_z - beta_5_y) - W_1_xz*d_2_r6_x -
+        W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t + omega_3_r1_x*omega_3_r3_y) -
+        bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) - bias_t_7*(W_2_t + W_2_t_2)
+    )
     # (rrrrrr-A12) acceleration of the connection point left to the joint accelerations
     rel_x = (
     S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
@@ -8250,41 +7074,34 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     S_ddot_x*axis_z_rrrrrr_axes5_in_base_x + S_ddot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_ddot_z*axis_z_rrrrrr_axes5_in_base_z - bias_z
     )
-    # (rrrrrr-A18) acceleration of joint 1
-    qdd_1_t = alpha_x*o_1_in_base_x + alpha_y*o_1_in_base_y + alpha_z*o_1_in_base_z
-    qdd_1 = (
-    qdd_1_t + inv_qd_1_t_44*(qd_1_t_18*rel_y + qd_1_t_8*rel_x - qd_1_t_22*rel_z) + nu_2*w_1_t_25 -
-        nu_1*w_1_t_24
+    # (rrrrrr-A20) acceleration of joint 1
+    qdd_1_t = etad_1*size
+    qdd_1_t_2 = etad_2*size
+    qdd_1_t_3 = (
+    inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
+        rel_y*w_1_t_84)
     )
-    # (rrrrrr-A20) acceleration of joint 2
-    qdd_2_t = alpha_x*o_2_in_base_x + alpha_y*o_2_in_base_y + alpha_z*o_2_in_base_z
-    qdd_2 = (
-    qdd_2_t + nu_1*w_2_t - inv_qd_1_t_44*(qd_1_t_14*rel_x + qd_1_t_23*rel_y - qd_1_t_25*rel_z) -
-        nu_2*w_2_t_2
+    qdd_1_t_4 = (
+    inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
+        qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
     )
-    # (rrrrrr-A22) acceleration of joint 3
-    qdd_3_t = alpha_x*o_3_in_base_x + alpha_y*o_3_in_base_y + alpha_z*o_3_in_base_z
-    qdd_3 = (
-    qdd_3_t + inv_qd_1_t_44*(qd_1_t_16*rel_x + qd_1_t_26*rel_y + qd_1_t_27*rel_z) + nu_2*w_3_t_2 -
-        nu_1*w_3_t
+    qdd_1_t_5 = (
+    inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56 -
+        qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
     )
-    # (rrrrrr-A24) acceleration of joint 4
-    qdd_4_t = alpha_x*o_4_in_base_x + alpha_y*o_4_in_base_y + alpha_z*o_4_in_base_z
-    qdd_4 = (
-    qdd_4_t + inv_qd_1_t_44*(qd_1_t_35*rel_x + qd_1_t_37*rel_y - qd_1_t_38*rel_z) + nu_2*w_4_t_2 -
-        nu_1*w_4_t
+    qdd_1_t_6 = (
+    inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 + qdd_1_t_4*w_1_t_42
+        + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
     )
-    # (rrrrrr-A26) acceleration of joint 5
-    qdd_5_t = alpha_x*o_5_in_base_x + alpha_y*o_5_in_base_y + alpha_z*o_5_in_base_z
-    qdd_5 = (
-    qdd_5_t + inv_qd_1_t_44*(qd_1_t_40*rel_y + qd_1_t_42*rel_z - qd_1_t_39*rel_x) + nu_2*w_5_t_2 -
-        nu_1*w_5_t
+    qdd_1_t_7 = (
+    inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 + rel_y*w_1_t_16 -
+        qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
     )
-    ok = (abs(w_1_t_17) > _TOLERANCE * w_1_t) & (abs(-qd_1_t_17) > _TOLERANCE * w_1_t)
-    return (ok, (), (qdd_1, qdd_2, qdd_3, qdd_4, qdd_5,),)
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
+    return (ok, (), (-qdd_1_t_5, qdd_1_t_4, qdd_1_t_3, qdd_1_t_6, qdd_1_t_7,),)
 
 
-# legs: 6504 mul, 4452 add, 12 div, 0 sqrt, 60 trig
+# legs: 5502 mul, 4050 add, 30 div, 30 sqrt, 60 trig
 def _legs_before(c, X, V, A, q, f):
     X_3 = X[3]
     X_4 = X[4]
@@ -8348,6 +7165,7 @@ def _legs_before(c, X, V, A, q, f):
 
 
 def _legs_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
     sin = f.sin
     cos = f.cos
     gravity_x, gravity_y, gravity_z = c
@@ -8363,7 +7181,7 @@ def _legs_rrrrrr(c, k, x, s, f):
         rrrrrr_link4_mass, rrrrrr_link5_mass, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, w_1_t,
+        rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -8450,10 +7268,10 @@ def _legs_rrrrrr(c, k, x, s, f):
     # (rrrrrr-V9) velocity of the connection point per rate of joint 4
     v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = c_4_t*s_3
-    w_1_t_3 = c_3*c_4_t
-    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_3 - c_2_t*w_1_t_2
-    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_3 + s_2*w_1_t_2
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
     # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
@@ -8473,9 +7291,9 @@ def _legs_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
         + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
     )
-    w_1_t_4 = s_4*s_5
-    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_4
-    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_4 - c_5_t*s_3
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
     axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
     axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
     axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
@@ -8540,110 +7358,122 @@ def _legs_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_5 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_6 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
-    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
-    n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_7 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_8 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
-    # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
-    n_m2_t = c_5_t*end_p1_r6_x
-    # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_9 = v_2_x*w_1_t_8 - v_3_x*w_1_t_8
-    w_1_t_10 = v_2_x*w_1_t_6 - v_3_x*w_1_t_6
-    w_1_t_11 = w_1_t_5*w_1_t_9 - w_1_t_10*w_1_t_7
-    w_1_t_12 = v_2_z*w_1_t_8 - v_3_z*w_1_t_8
-    w_1_t_13 = v_2_x*v_3_z - v_2_z*v_3_x
-    w_1_t_14 = v_1_x*w_1_t_12 + w_1_t_13*w_1_t_7 - v_1_z*w_1_t_9
-    w_1_t_15 = v_2_z*w_1_t_6 - v_3_z*w_1_t_6
-    w_1_t_16 = v_1_x*w_1_t_15 + w_1_t_13*w_1_t_5 - v_1_z*w_1_t_10
-    w_1_t_17 = n_m2_t*w_1_t_16 + v_4_z*w_1_t_11 - n_m1_r0_y*w_1_t_14
-    w_1_t_18 = v_2_y*w_1_t_6 - v_3_y*w_1_t_6
-    w_1_t_19 = v_2_x*v_3_y - v_2_y*v_3_x
-    w_1_t_20 = v_1_x*w_1_t_18 + w_1_t_19*w_1_t_5 - v_1_y*w_1_t_10
-    w_1_t_21 = v_2_y*v_3_z - v_2_z*v_3_y
-    w_1_t_22 = v_1_x*w_1_t_21 + v_1_z*w_1_t_19 - v_1_y*w_1_t_13
-    w_1_t_23 = n_m1_r0_y*w_1_t_22 + v_4_z*w_1_t_20
-    w_1_t_24 = end_p1_r8_y*w_1_t_23 + rrrrrr_platform_joint_offset_x*w_1_t_17
-    w_1_t_25 = n_m2_t*w_1_t_6 - n_m1_r0_y*w_1_t_8
-    w_1_t_26 = v_2_z*w_1_t_25
-    w_1_t_27 = v_4_z*w_1_t_8
-    w_1_t_28 = w_1_t_27 + n_m2_t*v_3_z
-    w_1_t_29 = v_4_z*w_1_t_6
-    w_1_t_30 = w_1_t_29 + n_m1_r0_y*v_3_z
-    w_1_t_31 = v_1_z*w_1_t_25
-    w_1_t_32 = v_1_y*w_1_t_6
-    w_1_t_33 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_3_z - v_1_z*v_3_y) + v_4_z*(w_1_t_32 - v_3_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_31 + w_1_t_30*w_1_t_7 - w_1_t_28*w_1_t_5)
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
     )
-    w_1_t_34 = (
-    end_p1_r8_y*(n_m1_r0_y*(v_1_y*v_2_z - v_1_z*v_2_y) + v_4_z*(w_1_t_32 - v_2_y*w_1_t_5)) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_31 + w_1_t_7*(w_1_t_29 + n_m1_r0_y*v_2_z) -
-        w_1_t_5*(w_1_t_27 + n_m2_t*v_2_z))
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
     )
-    w_1_t_35 = v_1_y*w_1_t_15 + w_1_t_21*w_1_t_5 - v_1_z*w_1_t_18
-    w_1_t_36 = v_2_y*w_1_t_8 - v_3_y*w_1_t_8
-    inv_w_1_t_113 = 1.0/w_1_t_24
-    w_1_t_37 = n_m1_r0_y*w_1_t_13 + v_4_z*w_1_t_10
-    w_1_t_38 = v_1_x*w_1_t_6
-    w_1_t_39 = w_1_t_38 - v_3_x*w_1_t_5
-    w_1_t_40 = v_1_x*v_3_z - v_1_z*v_3_x
-    w_1_t_41 = n_m1_r0_y*w_1_t_40 + v_4_z*w_1_t_39
-    w_1_t_42 = end_p1_r8_y*w_1_t_41
-    w_1_t_43 = w_1_t_38 - v_2_x*w_1_t_5
-    w_1_t_44 = v_1_x*v_2_z - v_1_z*v_2_x
-    w_1_t_45 = n_m1_r0_y*w_1_t_44 + v_4_z*w_1_t_43
-    w_1_t_46 = end_p1_r8_y*w_1_t_19 + rrrrrr_platform_joint_offset_x*w_1_t_9
-    w_1_t_47 = v_1_x*w_1_t_8
-    w_1_t_48 = (
-    end_p1_r8_y*(v_1_x*v_3_y - v_1_y*v_3_x) + rrrrrr_platform_joint_offset_x*(w_1_t_47 -
-        v_3_x*w_1_t_7)
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
     )
-    w_1_t_49 = n_m1_r0_y*w_1_t_48 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_39
-    w_1_t_50 = (
-    end_p1_r8_y*(v_1_x*v_2_y - v_1_y*v_2_x) + rrrrrr_platform_joint_offset_x*(w_1_t_47 -
-        v_2_x*w_1_t_7)
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
     )
-    w_1_t_51 = v_1_x*w_1_t_36 + w_1_t_19*w_1_t_7 - v_1_y*w_1_t_9
-    w_1_t_52 = inv_w_1_t_113*(v_4_z*w_1_t_46 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_13)
-    w_1_t_53 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_37
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
+    )
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
+    )
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    w_1_t_83 = inv_w_1_t_222*w_1_t_77
+    w_1_t_84 = inv_w_1_t_222*w_1_t_78
+    w_1_t_85 = inv_w_1_t_222*w_1_t_79
+    w_1_t_86 = inv_w_1_t_222*w_1_t_80
+    w_1_t_87 = inv_w_1_t_222*w_1_t_81
     # (rrrrrr-V16) force part of reciprocal wrench 2
-    w_2_t = inv_w_1_t_113*w_1_t_33
-    w_2_t_2 = inv_w_1_t_113*w_1_t_42
-    w_2_t_3 = inv_w_1_t_113*w_1_t_49
-    w_2_t_4 = inv_w_1_t_113*(v_4_z*w_1_t_48 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_40)
-    w_2_t_5 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_41
-    # (rrrrrr-V19) force part of reciprocal wrench 3
-    w_3_t = inv_w_1_t_113*(v_4_z*w_1_t_50 + n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_44)
-    w_3_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_45
-    # (rrrrrr-V22) force part of reciprocal wrench 4
-    w_4_t = inv_w_1_t_113*(rrrrrr_platform_joint_offset_x*w_1_t_14 - end_p1_r8_y*w_1_t_22)
-    w_4_t_2 = inv_w_1_t_113*rrrrrr_platform_joint_offset_x*w_1_t_16
-    # (rrrrrr-V25) force part of reciprocal wrench 5
-    w_5_t = inv_w_1_t_113*(n_m2_t*w_1_t_22 + v_4_z*w_1_t_51)
-    w_5_t_2 = inv_w_1_t_113*w_1_t_23
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_t = end_p1_r8_y*w_1_t_52
-    o_1_t_2 = end_p1_r8_y*w_1_t_53
-    o_1_y = -end_p1_r6_x*w_1_t_53 - end_p1_r8_x*w_1_t_52
+    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - w_1_t_83*w_2_t
+    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - w_1_t_84*w_2_t
+    w_2_t_4 = w_1_t_85*w_2_t - inv_w_1_t_194*w_1_t_73
+    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - w_1_t_86*w_2_t)
+    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - w_1_t_87*w_2_t)
     # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_t = end_p1_r8_y*w_2_t_4
-    o_2_t_2 = end_p1_r8_y*w_2_t_5
-    o_2_y = end_p1_r6_x*w_2_t_5 + end_p1_r8_x*w_2_t_4
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_t = end_p1_r8_y*w_3_t
-    o_3_t_2 = end_p1_r8_y*w_3_t_2
-    o_3_y = -end_p1_r6_x*w_3_t_2 - end_p1_r8_x*w_3_t
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_t = end_p1_r8_y*w_4_t
-    o_4_t_2 = end_p1_r8_y*w_4_t_2
-    o_4_y = -end_p1_r6_x*w_4_t_2 - end_p1_r8_x*w_4_t
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_t = end_p1_r8_y*w_5_t
-    o_5_t_2 = end_p1_r8_y*w_5_t_2
-    o_5_y = -end_p1_r6_x*w_5_t_2 - end_p1_r8_x*w_5_t
+    o_2_t = end_p1_r8_y*w_2_t_5
+    o_2_t_2 = end_p1_r8_y*w_2_t_6
+    o_2_y = end_p1_r8_x*w_2_t_5 - end_p1_r6_x*w_2_t_6
     # (M2) coupling block of M
     q_in_base_x = (
     R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
@@ -8661,22 +7491,6 @@ def _legs_rrrrrr(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (rrrrrr-V28) moment part of reciprocal wrench 1
-    o_1_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_1_t + axis_y_rrrrrr_axes5_in_base_x*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_1_t_2
-    )
-    o_1_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_1_t + axis_y_rrrrrr_axes5_in_base_y*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_1_t_2
-    )
-    o_1_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_1_t + axis_y_rrrrrr_axes5_in_base_z*o_1_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_1_t_2
-    )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t = o_1_in_base_x*omega_x + o_1_in_base_y*omega_y + o_1_in_base_z*omega_z
-    # (rrrrrr-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_rrrrrr_axes5_x + S_dot_y*axis_x_rrrrrr_axes5_y + S_dot_z*axis_x_rrrrrr_axes5_z
     )
@@ -8688,184 +7502,7 @@ def _legs_rrrrrr(c, k, x, s, f):
     S_dot_x*axis_z_rrrrrr_axes5_in_base_x + S_dot_y*axis_z_rrrrrr_axes5_in_base_y +
         S_dot_z*axis_z_rrrrrr_axes5_in_base_z
     )
-    # (rrrrrr-V33) rate of joint 1
-    qd_1_t_2 = end_p1_r8_y*n_m1_r0_y
-    qd_1_t_3 = end_p1_r8_y*w_1_t_6
-    qd_1_t_4 = qd_1_t_3*v_4_z
-    qd_1_t_5 = qd_1_t_4 + qd_1_t_2*v_3_z
-    qd_1_t_6 = qd_1_t_4 + qd_1_t_2*v_2_z
-    qd_1_t_7 = v_3_z*w_1_t_25 - w_1_t_26
-    qd_1_t_8 = qd_1_t_6*v_3_y + qd_1_t_7*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_2_y
-    qd_1_t_9 = end_p1_r8_y*w_1_t_5
-    qd_1_t_10 = qd_1_t_2*v_1_z + qd_1_t_9*v_4_z
-    qd_1_t_11 = n_m2_t*w_1_t_5 - n_m1_r0_y*w_1_t_7
-    qd_1_t_12 = v_4_z*(w_1_t_5*w_1_t_8 - w_1_t_6*w_1_t_7)
-    qd_1_t_13 = qd_1_t_12 + qd_1_t_11*v_3_z - w_1_t_31
-    qd_1_t_14 = qd_1_t_10*v_3_y + qd_1_t_13*rrrrrr_platform_joint_offset_x - qd_1_t_5*v_1_y
-    qd_1_t_15 = qd_1_t_12 + qd_1_t_11*v_2_z - w_1_t_31
-    qd_1_t_16 = qd_1_t_10*v_2_y + qd_1_t_15*rrrrrr_platform_joint_offset_x - qd_1_t_6*v_1_y
-    qd_1_t_17 = qd_1_t_16*v_3_x + qd_1_t_8*v_1_x - qd_1_t_14*v_2_x
-    qd_1_t_18 = qd_1_t_5*v_2_x - qd_1_t_6*v_3_x
-    qd_1_t_19 = rrrrrr_platform_joint_offset_x*w_1_t_25
-    qd_1_t_20 = qd_1_t_2*v_3_y - qd_1_t_19
-    qd_1_t_21 = qd_1_t_19 - qd_1_t_2*v_2_y
-    qd_1_t_22 = qd_1_t_20*v_2_x + qd_1_t_21*v_3_x
-    inv_qd_1_t_44 = 1.0/qd_1_t_17
-    qd_1_t_23 = qd_1_t_5*v_1_x - qd_1_t_10*v_3_x
-    qd_1_t_24 = qd_1_t_2*v_1_y - qd_1_t_11*rrrrrr_platform_joint_offset_x
-    qd_1_t_25 = qd_1_t_20*v_1_x - qd_1_t_24*v_3_x
-    qd_1_t_26 = qd_1_t_6*v_1_x - qd_1_t_10*v_2_x
-    qd_1_t_27 = qd_1_t_21*v_1_x + qd_1_t_24*v_2_x
-    qd_1_t_28 = rrrrrr_platform_joint_offset_x*w_1_t_8
-    qd_1_t_29 = qd_1_t_28 + end_p1_r8_y*v_3_y
-    qd_1_t_30 = qd_1_t_28 + end_p1_r8_y*v_2_y
-    qd_1_t_31 = qd_1_t_29*w_1_t_6 - qd_1_t_30*w_1_t_6
-    qd_1_t_32 = w_1_t_6*(end_p1_r8_y*v_1_y + rrrrrr_platform_joint_offset_x*w_1_t_7)
-    qd_1_t_33 = qd_1_t_29*w_1_t_5 - qd_1_t_32
-    qd_1_t_34 = qd_1_t_32 - qd_1_t_30*w_1_t_5
-    qd_1_t_35 = qd_1_t_33*v_2_z + qd_1_t_34*v_3_z - qd_1_t_31*v_1_z
-    qd_1_t_36 = qd_1_t_3*v_1_z
-    qd_1_t_37 = (
-    v_1_x*(qd_1_t_3*v_2_z - qd_1_t_3*v_3_z) + v_3_x*(qd_1_t_36 - qd_1_t_9*v_2_z) -
-        v_2_x*(qd_1_t_36 - qd_1_t_9*v_3_z)
-    )
-    qd_1_t_38 = qd_1_t_33*v_2_x + qd_1_t_34*v_3_x - qd_1_t_31*v_1_x
-    qd_1_t_39 = qd_1_t_15*v_3_y + qd_1_t_7*v_1_y - qd_1_t_13*v_2_y
-    qd_1_t_40 = qd_1_t_15*v_3_x + qd_1_t_7*v_1_x - qd_1_t_13*v_2_x
-    qd_1_t_41 = v_1_y*w_1_t_25
-    qd_1_t_42 = (
-    v_1_x*(v_2_y*w_1_t_25 - v_3_y*w_1_t_25) + v_3_x*(qd_1_t_41 - qd_1_t_11*v_2_y) -
-        v_2_x*(qd_1_t_41 - qd_1_t_11*v_3_y)
-    )
-    qd_1 = (
-    qd_1_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_8 + S_dot_tip_y*qd_1_t_18 - S_dot_tip_z*qd_1_t_22)
-    )
-    # (rrrrrr-V29) moment part of reciprocal wrench 2
-    o_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*o_2_y - axis_x_rrrrrr_axes5_x*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*o_2_t_2
-    )
-    o_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*o_2_y - axis_x_rrrrrr_axes5_y*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*o_2_t_2
-    )
-    o_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*o_2_y - axis_x_rrrrrr_axes5_z*o_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*o_2_t_2
-    )
-    # (rrrrrr-V34) rate of joint 2
-    qd_2_t = o_2_in_base_x*omega_x + o_2_in_base_y*omega_y + o_2_in_base_z*omega_z
-    qd_2 = (
-    qd_2_t - inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_14 + S_dot_tip_y*qd_1_t_23 - S_dot_tip_z*qd_1_t_25)
-    )
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2_t*qd_1
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_2
-    zeta_2_y = omega_1_t*qd_2
-    # (rrrrrr-V30) moment part of reciprocal wrench 3
-    o_3_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_3_t + axis_y_rrrrrr_axes5_in_base_x*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_3_t_2
-    )
-    o_3_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_3_t + axis_y_rrrrrr_axes5_in_base_y*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_3_t_2
-    )
-    o_3_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_3_t + axis_y_rrrrrr_axes5_in_base_z*o_3_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_3_t_2
-    )
-    # (rrrrrr-V35) rate of joint 3
-    qd_3_t = o_3_in_base_x*omega_x + o_3_in_base_y*omega_y + o_3_in_base_z*omega_z
-    qd_3 = (
-    qd_3_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_16 + S_dot_tip_y*qd_1_t_26 + S_dot_tip_z*qd_1_t_27)
-    )
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
-    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
-    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
-    zeta_3_x = omega_2_r0_y*qd_3
-    zeta_3_y = omega_2_r0_x*qd_3
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_r0_x = -c_3*zeta_2_x - s_3*zeta_2_y
-    zeta_2_r0_y = s_3*zeta_2_x - c_3*zeta_2_y
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_x = zeta_2_r0_x + zeta_3_x
-    beta_3_y = zeta_2_r0_y - zeta_3_y
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_z = qd_2 + qd_3
-    # (rrrrrr-V31) moment part of reciprocal wrench 4
-    o_4_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_4_t + axis_y_rrrrrr_axes5_in_base_x*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_4_t_2
-    )
-    o_4_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_4_t + axis_y_rrrrrr_axes5_in_base_y*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_4_t_2
-    )
-    o_4_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_4_t + axis_y_rrrrrr_axes5_in_base_z*o_4_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_4_t_2
-    )
-    # (rrrrrr-V36) rate of joint 4
-    qd_4_t = o_4_in_base_x*omega_x + o_4_in_base_y*omega_y + o_4_in_base_z*omega_z
-    qd_4 = (
-    qd_4_t + inv_qd_1_t_44*(S_dot_tip_x*qd_1_t_35 + S_dot_tip_y*qd_1_t_37 - S_dot_tip_z*qd_1_t_38)
-    )
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
-    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
-    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
-    zeta_4_x = omega_3_r1_y*qd_4
-    zeta_4_y = omega_3_r1_x*qd_4
-    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
-    beta_3_t = beta_3_y*c_4_t
-    beta_3_t_2 = beta_3_y*s_4
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_x = zeta_4_x - beta_3_t
-    beta_4_y = -beta_3_t_2 - zeta_4_y
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_z = omega_2_r0_x + qd_4
-    # (rrrrrr-V32) moment part of reciprocal wrench 5
-    o_5_in_base_x = (
-    axis_x_rrrrrr_axes5_x*o_5_t + axis_y_rrrrrr_axes5_in_base_x*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_x*o_5_t_2
-    )
-    o_5_in_base_y = (
-    axis_x_rrrrrr_axes5_y*o_5_t + axis_y_rrrrrr_axes5_in_base_y*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_y*o_5_t_2
-    )
-    o_5_in_base_z = (
-    axis_x_rrrrrr_axes5_z*o_5_t + axis_y_rrrrrr_axes5_in_base_z*o_5_y +
-        axis_z_rrrrrr_axes5_in_base_z*o_5_t_2
-    )
-    # (rrrrrr-V37) rate of joint 5
-    qd_5_t = o_5_in_base_x*omega_x + o_5_in_base_y*omega_y + o_5_in_base_z*omega_z
-    qd_5 = (
-    qd_5_t + inv_qd_1_t_44*(S_dot_tip_y*qd_1_t_40 + S_dot_tip_z*qd_1_t_42 - S_dot_tip_x*qd_1_t_39)
-    )
-    # (rrrrrr-V44) angular velocity of link 4
-    omega_4_t = c_5_t*omega_3_r1_y
-    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
-    omega_4_t_2 = omega_3_r1_y*s_5
-    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
-    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
-    zeta_5_x = omega_4_r1_y*qd_5
-    zeta_5_y = omega_4_r1_x*qd_5
-    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
-    beta_4_t = beta_3_x*s_5
-    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
-    beta_4_t_2 = beta_3_x*c_5_t
-    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
-    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
-    beta_5_x = beta_4_r1_x + zeta_5_x
-    beta_5_y = beta_4_r1_y - zeta_5_y
-    # (rrrrrr-V46) angular velocity of link 5
-    omega_5_z = omega_3_r1_x + qd_5
     # (rrrrrr-A14) rate of moment direction 1
-    nd_m1_t = end_p1_r8_y*omega_4_r1_y
     omega_tip_x = (
     axis_x_rrrrrr_axes5_x*omega_x + axis_x_rrrrrr_axes5_y*omega_y + axis_x_rrrrrr_axes5_z*omega_z
     )
@@ -8877,54 +7514,9 @@ def _legs_rrrrrr(c, k, x, s, f):
     axis_z_rrrrrr_axes5_in_base_x*omega_x + axis_z_rrrrrr_axes5_in_base_y*omega_y +
         axis_z_rrrrrr_axes5_in_base_z*omega_z
     )
+    nd_m1_t = end_p1_r6_x*omega_tip_y - end_p1_r8_y*omega_tip_z
     nd_m1_t_2 = end_p1_r8_x*omega_tip_z - end_p1_r6_x*omega_tip_x
-    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
-    nd_m1_y = end_p1_r6_x*omega_tip_y - end_p1_r6_x*omega_4_r1_y - end_p1_r8_y*omega_tip_z
-    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
-    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
-    nu_1_t_2 = omega_4_r1_x - omega_tip_x
-    nu_1_t_3 = omega_4_r1_y - omega_tip_y
-    nu_1_t_4 = omega_5_z - omega_tip_z
-    nu_1_t_5 = nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t + end_p1_r8_x*omega_4_r1_x)
-    nu_1 = nu_1_t - nu_1_t_5
-    # (rrrrrr-A16) rate of moment direction 2
-    nd_m2_y = end_p1_r8_x*omega_tip_y - end_p1_r8_x*omega_4_r1_y - end_p1_r8_y*omega_tip_x
-    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
-    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
-    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
-    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t + end_p1_r6_x*omega_5_z)
-    nu_2 = nu_2_t - nu_2_t_2
-    # (rrrrrr-V41) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_2*qd_2
-    W_2_xy = omega_1_t*omega_1_t_2
-    # (rrrrrr-V43) centripetal tensor of link 3
-    W_3_t = omega_2_r0_x*omega_2_r0_x
-    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
-    W_3_t_3 = omega_3_z*omega_3_z
-    W_3_xx = W_3_t_2 + W_3_t_3
-    W_3_xy = omega_2_r0_x*omega_2_r0_y
-    W_3_xz = omega_2_r0_x*omega_3_z
-    W_3_yz = omega_2_r0_y*omega_3_z
-    # (rrrrrr-V45) centripetal tensor of link 4
-    W_4_t = omega_3_r1_x*omega_3_r1_x
-    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
-    W_4_t_3 = omega_4_z*omega_4_z
-    W_4_xy = omega_3_r1_x*omega_3_r1_y
-    W_4_xz = omega_3_r1_x*omega_4_z
-    W_4_yz = omega_3_r1_y*omega_4_z
-    # (rrrrrr-V47) centripetal tensor of link 5
-    W_5_t = omega_4_r1_x*omega_4_r1_x
-    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
-    W_5_t_3 = omega_5_z*omega_5_z
-    W_5_xy = omega_4_r1_x*omega_4_r1_y
-    W_5_xz = omega_4_r1_x*omega_5_z
-    W_5_yz = omega_4_r1_y*omega_5_z
-    # (rrrrrr-V38) angular velocity of link 1
-    omega_1_x = e_1_r6_x*qd_1
-    omega_1_y = e_1_r6_y*qd_1
-    omega_1_z = qd_1*v_1_t
+    nd_m1_t_3 = end_p1_r8_y*omega_tip_x - end_p1_r8_x*omega_tip_y
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
     bias_t = rrrrrr_joint2_offset_x*s_2
     bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
@@ -8934,68 +7526,17 @@ def _legs_rrrrrr(c, k, x, s, f):
     bias_t_4 = d_2_r2_y*s_4
     d_2_r6_x = bias_t_4*c_5_t + d_2_r2_x*s_5
     d_2_r6_y = bias_t_4*s_5 - c_5_t*d_2_r2_x
-    bias_t_5 = bias_t_3*omega_1_y - d_2_r6_y*omega_1_z
-    bias_t_6 = d_2_r6_x*omega_1_z - bias_t_3*omega_1_x
-    bias_t_7 = d_2_r6_y*omega_1_x - d_2_r6_x*omega_1_y
-    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_t = c_4_t*zeta_2_r0_y
-    zeta_2_t_2 = s_4*zeta_2_r0_y
-    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
-    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_8 = c_3*rrrrrr_joint3_offset_x
-    bias_t_9 = rrrrrr_joint3_offset_x*s_3
-    bias_t_10 = bias_t_9*c_4_t
-    bias_t_11 = bias_t_9*s_4
-    d_3_r4_x = bias_t_8*s_5 - bias_t_11*c_5_t
-    d_3_r4_y = -bias_t_11*s_5 - bias_t_8*c_5_t
-    # (rrrrrr-V40) angular velocity of link 2
-    omega_2_x = omega_1_x + qd_2*v_2_t
-    omega_2_y = omega_1_y + qd_2*v_2_t_2
-    omega_2_z = qd_2*s_4 - omega_1_z
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_12 = bias_t_10*omega_2_y - d_3_r4_y*omega_2_z
-    bias_t_13 = d_3_r4_x*omega_2_z - bias_t_10*omega_2_x
-    bias_t_14 = d_3_r4_y*omega_2_x - d_3_r4_x*omega_2_y
-    bias_t_15 = rrrrrr_joint4_offset_x*s_5
-    bias_t_16 = c_5_t*rrrrrr_joint4_offset_x
-    # (rrrrrr-V42) angular velocity of link 3
-    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
-    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
-    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
-    bias_t_17 = bias_t_16*omega_3_r1_x
-    bias_t_18 = bias_t_15*omega_3_r1_x
-    bias_t_19 = bias_t_15*omega_3_r3_y + bias_t_16*omega_3_r3_x
-    bias_t_20 = rrrrrr_joint5_offset_x*s_5
-    bias_t_21 = c_5_t*rrrrrr_joint5_offset_x
-    bias_t_22 = bias_t_21*omega_3_r1_x
-    bias_t_23 = bias_t_20*omega_3_r1_x
-    bias_t_24 = bias_t_20*omega_4_r1_y + bias_t_21*omega_4_r1_x
-    bias_t_25 = omega_5_z*rrrrrr_platform_joint_offset_x
-    bias_t_26 = omega_4_r1_y*rrrrrr_platform_joint_offset_x
-    bias_x = (
-    beta_4_x*bias_t_21 + bias_t_10*zeta_2_r4_y + bias_t_14*omega_2_y + bias_t_7*omega_1_y +
-        d_3_r4_y*zeta_2_t - beta_3_t*bias_t_16 - bias_t_13*omega_2_z - bias_t_18*omega_3_r1_x -
-        bias_t_19*omega_3_r3_y - bias_t_23*omega_3_r1_x - bias_t_24*omega_4_r1_y -
-        bias_t_25*omega_5_z - bias_t_26*omega_4_r1_y - bias_t_6*omega_1_z
-    )
-    bias_y = (
-    beta_4_x*bias_t_20 + beta_4_x*rrrrrr_platform_joint_offset_x + bias_t_12*omega_2_z +
-        bias_t_17*omega_3_r1_x + bias_t_19*omega_3_r3_x + bias_t_22*omega_3_r1_x +
-        bias_t_24*omega_4_r1_x + bias_t_26*omega_4_r1_x + bias_t_5*omega_1_z - beta_3_t*bias_t_15
-        - bias_t_10*zeta_2_r4_x - bias_t_14*omega_2_x - bias_t_7*omega_1_x - d_3_r4_x*zeta_2_t
-    )
-    bias_z = (
-    bias_t_13*omega_2_x + bias_t_18*omega_3_r3_x + bias_t_23*omega_4_r1_x + bias_t_25*omega_4_r1_x
-        + bias_t_5*omega_1_y + d_3_r4_y*zeta_2_r4_x - beta_4_r1_x*bias_t_21 -
-        beta_4_r1_y*bias_t_20 - beta_5_y*rrrrrr_platform_joint_offset_x - bias_t_12*omega_2_y -
-        bias_t_15*(beta_3_t_2*s_5 - beta_4_t_2) - bias_t_16*(beta_4_t + beta_3_t_2*c_5_t) -
-        bias_t_17*omega_3_r3_y - bias_t_22*omega_4_r1_y - bias_t_6*omega_1_x -
-        d_3_r4_x*zeta_2_r4_y
-    )
-    # (rrrrrr-A65) remainder without the acceleration in: acceleration of the origin of joint 3
-    a_o3_o_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
-    # (rrrrrr-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    bias_t_5 = c_3*rrrrrr_joint3_offset_x
+    bias_t_6 = rrrrrr_joint3_offset_x*s_3
+    bias_t_7 = bias_t_6*c_4_t
+    bias_t_8 = bias_t_6*s_4
+    d_3_r4_x = bias_t_5*s_5 - bias_t_8*c_5_t
+    d_3_r4_y = -bias_t_5*c_5_t - bias_t_8*s_5
+    bias_t_9 = rrrrrr_joint4_offset_x*s_5
+    bias_t_10 = c_5_t*rrrrrr_joint4_offset_x
+    bias_t_11 = rrrrrr_joint5_offset_x*s_5
+    bias_t_12 = c_5_t*rrrrrr_joint5_offset_x
+    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r1_x = g_r0_y*s_1 - c_1_t*g_r0_x
     g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2_t*g_r1_y
@@ -9004,17 +7545,126 @@ def _legs_rrrrrr(c, k, x, s, f):
     g_r4_y = c_3*g_r3_y - g_r3_x*s_3
     # (rrrrrr-V16) force part of reciprocal wrench 2
     w_2_in_base_x = (
-    axis_y_rrrrrr_axes5_in_base_x*w_2_t_2 - axis_x_rrrrrr_axes5_x*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_x*w_2_t_3
+    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
     )
     w_2_in_base_y = (
-    axis_y_rrrrrr_axes5_in_base_y*w_2_t_2 - axis_x_rrrrrr_axes5_y*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_y*w_2_t_3
+    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
     )
     w_2_in_base_z = (
-    axis_y_rrrrrr_axes5_in_base_z*w_2_t_2 - axis_x_rrrrrr_axes5_z*w_2_t -
-        axis_z_rrrrrr_axes5_in_base_z*w_2_t_3
+    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
     )
+    # (rrrrrr-V35) rate of joint 1
+    qd_1_t = nd_m1_t_3*size
+    qd_1_t_2 = nd_m1_t*size
+    qd_1_t_3 = (
+    inv_w_1_t_222*(S_dot_tip_y*w_1_t_84 + qd_1_t*w_1_t_86 + qd_1_t_2*w_1_t_87 -
+        S_dot_tip_x*w_1_t_83 - S_dot_tip_z*w_1_t_85)
+    )
+    qd_1_t_4 = (
+    inv_w_1_t_194*(S_dot_tip_y*w_1_t_72 + qd_1_t*w_1_t_74 + qd_1_t_2*w_1_t_75 -
+        S_dot_tip_x*w_1_t_71 - S_dot_tip_z*w_1_t_73 - qd_1_t_3*w_1_t_76)
+    )
+    qd_1_t_5 = (
+    inv_w_1_t_150*(S_dot_tip_x*w_1_t_53 + S_dot_tip_z*w_1_t_55 + qd_1_t_3*w_1_t_64 +
+        qd_1_t_4*w_1_t_58 - S_dot_tip_y*w_1_t_54 - qd_1_t*w_1_t_56 - qd_1_t_2*w_1_t_57)
+    )
+    qd_1_t_6 = (
+    inv_w_1_t_101*(S_dot_tip_y*w_1_t_32 + qd_1_t*w_1_t_34 + qd_1_t_2*w_1_t_35 + qd_1_t_3*w_1_t_47
+        + qd_1_t_4*w_1_t_42 - S_dot_tip_z*w_1_t_33 - qd_1_t_5*w_1_t_36)
+    )
+    qd_1_t_7 = (
+    inv_w_1_t_69*(S_dot_tip_y*w_1_t_16 + qd_1_t_4*w_1_t_25 + qd_1_t_6*w_1_t_18 - qd_1_t_2*w_1_t_17
+        - qd_1_t_3*w_1_t_28 - qd_1_t_5*w_1_t_21)
+    )
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_t = qd_1_t_5*s_2
+    omega_1_t_2 = c_2_t*qd_1_t_5
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_x = omega_1_t_2*qd_1_t_4
+    zeta_2_y = omega_1_t*qd_1_t_4
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_r0_x = c_3*omega_1_t - omega_1_t_2*s_3
+    omega_2_r0_y = -c_3*omega_1_t_2 - omega_1_t*s_3
+    # (rrrrrr-A5) angular acceleration of link 3 from the turning of axis 3
+    zeta_3_x = omega_2_r0_y*qd_1_t_3
+    zeta_3_y = omega_2_r0_x*qd_1_t_3
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_r0_x = c_3*zeta_2_x + s_3*zeta_2_y
+    zeta_2_r0_y = c_3*zeta_2_y - s_3*zeta_2_x
+    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+    beta_3_x = zeta_2_r0_x - zeta_3_x
+    beta_3_y = zeta_2_r0_y + zeta_3_y
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_z = -qd_1_t_3 - qd_1_t_4
+    omega_3_r1_x = omega_3_z*s_4 - c_4_t*omega_2_r0_y
+    omega_3_r1_y = -c_4_t*omega_3_z - omega_2_r0_y*s_4
+    # (rrrrrr-A7) angular acceleration of link 4 from the turning of axis 4
+    zeta_4_x = omega_3_r1_y*qd_1_t_6
+    zeta_4_y = omega_3_r1_x*qd_1_t_6
+    # (rrrrrr-A6) angular acceleration of link 3 at zero joint accelerations
+    beta_3_t = beta_3_y*c_4_t
+    beta_3_t_2 = beta_3_y*s_4
+    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+    beta_4_x = -beta_3_t - zeta_4_x
+    beta_4_y = zeta_4_y - beta_3_t_2
+    # (rrrrrr-V46) angular velocity of link 4
+    omega_4_z = omega_2_r0_x - qd_1_t_6
+    omega_4_t = c_5_t*omega_3_r1_y
+    omega_4_r1_x = omega_4_z*s_5 - omega_4_t
+    omega_4_t_2 = omega_3_r1_y*s_5
+    omega_4_r1_y = -omega_4_t_2 - c_5_t*omega_4_z
+    # (rrrrrr-A9) angular acceleration of link 5 from the turning of axis 5
+    zeta_5_x = omega_4_r1_y*qd_1_t_7
+    zeta_5_y = omega_4_r1_x*qd_1_t_7
+    # (rrrrrr-A8) angular acceleration of link 4 at zero joint accelerations
+    beta_4_t = beta_3_x*s_5
+    beta_4_r1_x = beta_4_t - beta_4_y*c_5_t
+    beta_4_t_2 = beta_3_x*c_5_t
+    beta_4_r1_y = -beta_4_t_2 - beta_4_y*s_5
+    # (rrrrrr-A10) angular acceleration of link 5 at zero joint accelerations
+    beta_5_x = beta_4_r1_x + zeta_5_x
+    beta_5_y = beta_4_r1_y - zeta_5_y
+    # (rrrrrr-V48) angular velocity of link 5
+    omega_5_z = omega_3_r1_x + qd_1_t_7
+    # (rrrrrr-A14) rate of moment direction 1
+    nd_m1_t_4 = end_p1_r8_y*omega_4_r1_y
+    nd_m1_x = -nd_m1_t_2 - end_p1_r6_x*omega_4_r1_x
+    nd_m1_y = nd_m1_t - end_p1_r6_x*omega_4_r1_y
+    # (rrrrrr-A15) bias of the angular acceleration along moment direction 1
+    nu_1_t = beta_5_x*end_p1_r8_y - beta_5_y*end_p1_r8_x
+    nu_1_t_2 = omega_4_r1_x - omega_tip_x
+    nu_1_t_3 = omega_4_r1_y - omega_tip_y
+    nu_1_t_4 = omega_5_z - omega_tip_z
+    nu_1_t_5 = (
+    nd_m1_x*nu_1_t_2 + nd_m1_y*nu_1_t_3 + nu_1_t_4*(nd_m1_t_4 + end_p1_r8_x*omega_4_r1_x)
+    )
+    nu_1 = nu_1_t - nu_1_t_5
+    # (rrrrrr-A18) acceleration with which the joints turn along moment direction 1
+    alpha_tip_y = (
+    alpha_x*axis_y_rrrrrr_axes5_in_base_x + alpha_y*axis_y_rrrrrr_axes5_in_base_y +
+        alpha_z*axis_y_rrrrrr_axes5_in_base_z
+    )
+    etad_1_t = (
+    end_p1_r8_y*(alpha_x*axis_x_rrrrrr_axes5_x + alpha_y*axis_x_rrrrrr_axes5_y +
+        alpha_z*axis_x_rrrrrr_axes5_z) - alpha_tip_y*end_p1_r8_x
+    )
+    etad_1 = nu_1 - etad_1_t
+    # (rrrrrr-A16) rate of moment direction 2
+    nd_m2_y = -nd_m1_t_3 - end_p1_r8_x*omega_4_r1_y
+    nd_m2_z = nd_m1_t_2 - end_p1_r8_x*omega_5_z
+    # (rrrrrr-A17) bias of the angular acceleration along moment direction 2
+    nu_2_t = beta_5_y*end_p1_r6_x - beta_4_x*end_p1_r8_y
+    nu_2_t_2 = nd_m2_y*nu_1_t_3 + nd_m2_z*nu_1_t_4 + nu_1_t_2*(nd_m1_t_4 + end_p1_r6_x*omega_5_z)
+    nu_2 = nu_2_t - nu_2_t_2
+    # (rrrrrr-A19) acceleration with which the joints turn along moment direction 2
+    etad_2_t = (
+    alpha_tip_y*end_p1_r6_x - end_p1_r8_y*(alpha_x*axis_z_rrrrrr_axes5_in_base_x +
+        alpha_y*axis_z_rrrrrr_axes5_in_base_y + alpha_z*axis_z_rrrrrr_axes5_in_base_z)
+    )
+    etad_2 = nu_2 - etad_2_t
     # (rrrrrr-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -9023,6 +7673,89 @@ def _legs_rrrrrr(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t = omega_1_t*omega_1_t
+    W_2_t_2 = omega_1_t_2*omega_1_t_2
+    W_2_t_3 = qd_1_t_4*qd_1_t_4
+    W_2_xy = omega_1_t*omega_1_t_2
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_t = omega_2_r0_x*omega_2_r0_x
+    W_3_t_2 = omega_2_r0_y*omega_2_r0_y
+    W_3_t_3 = omega_3_z*omega_3_z
+    W_3_xx = W_3_t_2 + W_3_t_3
+    W_3_xy = omega_2_r0_x*omega_2_r0_y
+    W_3_xz = omega_2_r0_x*omega_3_z
+    W_3_yz = omega_2_r0_y*omega_3_z
+    # (rrrrrr-V47) centripetal tensor of link 4
+    W_4_t = omega_3_r1_x*omega_3_r1_x
+    W_4_t_2 = omega_3_r1_y*omega_3_r1_y
+    W_4_t_3 = omega_4_z*omega_4_z
+    W_4_xy = omega_3_r1_x*omega_3_r1_y
+    W_4_xz = omega_3_r1_x*omega_4_z
+    W_4_yz = omega_3_r1_y*omega_4_z
+    # (rrrrrr-V49) centripetal tensor of link 5
+    W_5_t = omega_4_r1_x*omega_4_r1_x
+    W_5_t_2 = omega_4_r1_y*omega_4_r1_y
+    W_5_t_3 = omega_5_z*omega_5_z
+    W_5_xx = W_5_t_2 + W_5_t_3
+    W_5_xy = omega_4_r1_x*omega_4_r1_y
+    W_5_xz = omega_4_r1_x*omega_5_z
+    W_5_yz = omega_4_r1_y*omega_5_z
+    # (rrrrrr-V40) angular velocity of link 1
+    omega_1_x = e_1_r6_x*qd_1_t_5
+    omega_1_y = e_1_r6_y*qd_1_t_5
+    omega_1_z = qd_1_t_5*v_1_t
+    # (rrrrrr-V41) centripetal tensor of link 1
+    W_1_t = omega_1_x*omega_1_x
+    W_1_t_2 = omega_1_y*omega_1_y
+    W_1_t_3 = omega_1_z*omega_1_z
+    W_1_xy = omega_1_x*omega_1_y
+    W_1_xz = omega_1_x*omega_1_z
+    W_1_yz = omega_1_y*omega_1_z
+    # (rrrrrr-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_t = c_4_t*zeta_2_r0_y
+    zeta_2_t_2 = s_4*zeta_2_r0_y
+    zeta_2_r4_x = c_5_t*zeta_2_t_2 + s_5*zeta_2_r0_x
+    zeta_2_r4_y = s_5*zeta_2_t_2 - c_5_t*zeta_2_r0_x
+    # (rrrrrr-V42) angular velocity of link 2
+    omega_2_x = omega_1_x - qd_1_t_4*v_2_t
+    omega_2_y = omega_1_y - qd_1_t_4*v_2_t_2
+    omega_2_z = -omega_1_z - qd_1_t_4*s_4
+    # (rrrrrr-V43) centripetal tensor of link 2
+    W_2_t_4 = omega_2_x*omega_2_x
+    W_2_t_5 = omega_2_y*omega_2_y
+    W_2_t_6 = omega_2_z*omega_2_z
+    W_2_xy_2 = omega_2_x*omega_2_y
+    W_2_xz = omega_2_x*omega_2_z
+    W_2_yz = omega_2_y*omega_2_z
+    # (rrrrrr-V44) angular velocity of link 3
+    omega_3_r3_x = omega_2_r0_x*s_5 - omega_4_t
+    omega_3_r3_y = -omega_4_t_2 - c_5_t*omega_2_r0_x
+    # (rrrrrr-V45) centripetal tensor of link 3
+    W_3_xy_2 = omega_3_r3_x*omega_3_r3_y
+    # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
+    bias_t_13 = W_5_xy + beta_4_x
+    bias_x = (
+    W_1_xy*d_2_r6_y + W_1_xz*bias_t_3 + bias_t_7*(W_2_xz + zeta_2_r4_y) + d_3_r4_y*(W_2_xy_2 +
+        zeta_2_t) - W_5_xx*rrrrrr_platform_joint_offset_x - bias_t_10*(W_3_xy_2 + beta_3_t) -
+        bias_t_11*(W_4_t + W_5_t_2) - bias_t_12*(W_5_xy - beta_4_x) - bias_t_9*(W_4_t +
+        omega_3_r3_y*omega_3_r3_y) - d_2_r6_x*(W_1_t_2 + W_1_t_3) - d_3_r4_x*(W_2_t_5 + W_2_t_6)
+    )
+    bias_y = (
+    W_1_xy*d_2_r6_x + W_1_yz*bias_t_3 + bias_t_10*(W_4_t + omega_3_r3_x*omega_3_r3_x) +
+        bias_t_11*bias_t_13 + bias_t_12*(W_4_t + W_5_t) + bias_t_13*rrrrrr_platform_joint_offset_x
+        + bias_t_7*(W_2_yz - zeta_2_r4_x) + bias_t_9*(W_3_xy_2 - beta_3_t) + d_3_r4_x*(W_2_xy_2 -
+        zeta_2_t) - d_2_r6_y*(W_1_t + W_1_t_3) - d_3_r4_y*(W_2_t_4 + W_2_t_6)
+    )
+    bias_z = (
+    bias_t_11*(omega_3_r1_x*omega_4_r1_x - beta_4_r1_y) + bias_t_3*(W_1_t + W_1_t_2) +
+        bias_t_9*(beta_4_t_2 + omega_3_r1_x*omega_3_r3_x - beta_3_t_2*s_5) + d_3_r4_x*(W_2_xz -
+        zeta_2_r4_y) + d_3_r4_y*(W_2_yz + zeta_2_r4_x) + rrrrrr_platform_joint_offset_x*(W_5_xz -
+        beta_5_y) - W_1_xz*d_2_r6_x - W_1_yz*d_2_r6_y - bias_t_10*(beta_4_t + beta_3_t_2*c_5_t +
+        omega_3_r1_x*omega_3_r3_y) - bias_t_12*(beta_4_r1_x + omega_3_r1_x*omega_4_r1_y) -
+        bias_t_7*(W_2_t_4 + W_2_t_5)
+    )
+    # (rrrrrr-A3) acceleration of the connection point
     S_ddot_tip_x = (
     S_ddot_x*axis_x_rrrrrr_axes5_x + S_ddot_y*axis_x_rrrrrr_axes5_y +
         S_ddot_z*axis_x_rrrrrr_axes5_z
@@ -9039,37 +7772,26 @@ def _legs_rrrrrr(c, k, x, s, f):
     rel_x = S_ddot_tip_x - bias_x
     rel_y = S_ddot_tip_y - bias_y
     rel_z = S_ddot_tip_z - bias_z
-    # (rrrrrr-A18) acceleration of joint 1
-    qdd_1_t = alpha_x*o_1_in_base_x + alpha_y*o_1_in_base_y + alpha_z*o_1_in_base_z
-    qdd_1 = (
-    qdd_1_t + inv_qd_1_t_44*(qd_1_t_18*rel_y + qd_1_t_8*rel_x - qd_1_t_22*rel_z) + nu_2*w_1_t_53 -
-        nu_1*w_1_t_52
+    # (rrrrrr-A20) acceleration of joint 1
+    qdd_1_t = etad_1*size
+    qdd_1_t_2 = etad_2*size
+    qdd_1_t_3 = (
+    inv_w_1_t_222*(qdd_1_t*w_1_t_86 + qdd_1_t_2*w_1_t_87 + rel_x*w_1_t_83 + rel_z*w_1_t_85 -
+        rel_y*w_1_t_84)
     )
-    # (rrrrrr-A20) acceleration of joint 2
-    qdd_2_t = alpha_x*o_2_in_base_x + alpha_y*o_2_in_base_y + alpha_z*o_2_in_base_z
-    qdd_2 = (
-    qdd_2_t + nu_1*w_2_t_4 - inv_qd_1_t_44*(qd_1_t_14*rel_x + qd_1_t_23*rel_y - qd_1_t_25*rel_z) -
-        nu_2*w_2_t_5
+    qdd_1_t_4 = (
+    inv_w_1_t_194*(qdd_1_t*w_1_t_74 + qdd_1_t_2*w_1_t_75 + rel_x*w_1_t_71 + rel_z*w_1_t_73 -
+        qdd_1_t_3*w_1_t_76 - rel_y*w_1_t_72)
     )
-    # (rrrrrr-A22) acceleration of joint 3
-    qdd_3_t = alpha_x*o_3_in_base_x + alpha_y*o_3_in_base_y + alpha_z*o_3_in_base_z
-    qdd_3 = (
-    qdd_3_t + inv_qd_1_t_44*(qd_1_t_16*rel_x + qd_1_t_26*rel_y + qd_1_t_27*rel_z) + nu_2*w_3_t_2 -
-        nu_1*w_3_t
+    qdd_1_t_5 = (
+    inv_w_1_t_150*(qdd_1_t_3*w_1_t_64 + qdd_1_t_4*w_1_t_58 + rel_y*w_1_t_54 - qdd_1_t*w_1_t_56 -
+        qdd_1_t_2*w_1_t_57 - rel_x*w_1_t_53 - rel_z*w_1_t_55)
     )
-    # (rrrrrr-A24) acceleration of joint 4
-    qdd_4_t = alpha_x*o_4_in_base_x + alpha_y*o_4_in_base_y + alpha_z*o_4_in_base_z
-    qdd_4 = (
-    qdd_4_t + inv_qd_1_t_44*(qd_1_t_35*rel_x + qd_1_t_37*rel_y - qd_1_t_38*rel_z) + nu_2*w_4_t_2 -
-        nu_1*w_4_t
+    qdd_1_t_6 = (
+    inv_w_1_t_101*(qdd_1_t*w_1_t_34 + qdd_1_t_2*w_1_t_35 + qdd_1_t_3*w_1_t_47 + qdd_1_t_4*w_1_t_42
+        + rel_z*w_1_t_33 - qdd_1_t_5*w_1_t_36 - rel_y*w_1_t_32)
     )
-    # (rrrrrr-A26) acceleration of joint 5
-    qdd_5_t = alpha_x*o_5_in_base_x + alpha_y*o_5_in_base_y + alpha_z*o_5_in_base_z
-    qdd_5 = (
-    qdd_5_t + inv_qd_1_t_44*(qd_1_t_40*rel_y + qd_1_t_42*rel_z - qd_1_t_39*rel_x) + nu_2*w_5_t_2 -
-        nu_1*w_5_t
-    )
-    # (rrrrrr-N33) acceleration of the reference point of link 5, less gravity
+    # (rrrrrr-N21) acceleration of the reference point of link 5, less gravity
     acc_5_x = (
     S_ddot_tip_x - axis_x_rrrrrr_axes5_x*gravity_x - axis_x_rrrrrr_axes5_y*gravity_y -
         axis_x_rrrrrr_axes5_z*gravity_z
@@ -9082,54 +7804,55 @@ def _legs_rrrrrr(c, k, x, s, f):
     S_ddot_tip_z - axis_z_rrrrrr_axes5_in_base_x*gravity_x -
         axis_z_rrrrrr_axes5_in_base_y*gravity_y - axis_z_rrrrrr_axes5_in_base_z*gravity_z
     )
-    # (rrrrrr-A28) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2_t*qdd_1
+    # (rrrrrr-A30) angular acceleration of link 1
+    alpha_1_t = qdd_1_t_5*s_2
+    alpha_1_t_2 = c_2_t*qdd_1_t_5
     # (rrrrrr-A34) angular acceleration of link 2
-    alpha_2_x = alpha_1_t - zeta_2_x
-    alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (rrrrrr-A38) acceleration tensor of link 2
-    B_2_xy = -W_2_xy - qdd_2
-    B_2_yx = qdd_2 - W_2_xy
-    B_2_zx = zeta_2_y - alpha_2_y
-    B_2_zy = alpha_2_x - zeta_2_x
-    # (rrrrrr-A62) acceleration of the origin of joint 3
-    a_o3_t = B_2_yx*rrrrrr_joint3_offset_x
-    a_o3_t_2 = B_2_zx*rrrrrr_joint3_offset_x
-    # (rrrrrr-A40) angular acceleration of link 3
-    alpha_3_x = zeta_3_x + alpha_2_x*c_3 + alpha_2_y*s_3
-    alpha_3_y = alpha_2_y*c_3 - zeta_3_y - alpha_2_x*s_3
-    alpha_3_z = qdd_2 + qdd_3
-    # (rrrrrr-A44) acceleration tensor of link 3
+    alpha_2_x = zeta_2_x - alpha_1_t
+    alpha_2_y = alpha_1_t_2 + zeta_2_y
+    # (rrrrrr-A36) acceleration tensor of link 2
+    B_2_xy = -W_2_xy - qdd_1_t_4
+    B_2_yx = qdd_1_t_4 - W_2_xy
+    B_2_zx = -alpha_2_y - zeta_2_y
+    B_2_zy = alpha_2_x + zeta_2_x
+    # (rrrrrr-A54) acceleration of the origin of joint 3
+    a_o3_t = rrrrrr_joint3_offset_x*(W_2_t_2 + W_2_t_3)
+    a_o3_t_2 = B_2_yx*rrrrrr_joint3_offset_x
+    a_o3_t_3 = B_2_zx*rrrrrr_joint3_offset_x
+    # (rrrrrr-A38) angular acceleration of link 3
+    alpha_3_x = alpha_2_x*c_3 + alpha_2_y*s_3 - zeta_3_x
+    alpha_3_y = zeta_3_y + alpha_2_y*c_3 - alpha_2_x*s_3
+    alpha_3_z = qdd_1_t_3 + qdd_1_t_4
+    # (rrrrrr-A40) acceleration tensor of link 3
     B_3_xy = W_3_xy - alpha_3_z
     B_3_xz = W_3_xz + alpha_3_y
     B_3_yx = W_3_xy + alpha_3_z
     B_3_yz = W_3_yz - alpha_3_x
     B_3_zx = W_3_xz - alpha_3_y
     B_3_zy = W_3_yz + alpha_3_x
-    # (rrrrrr-A62) acceleration of the origin of joint 3
-    a_o3_r0_x = a_o3_t*s_3 - a_o3_o_t*c_3
-    a_o3_r0_y = a_o3_o_t*s_3 + a_o3_t*c_3
-    # (rrrrrr-A66) acceleration of the origin of joint 4
+    # (rrrrrr-A54) acceleration of the origin of joint 3
+    a_o3_r0_x = a_o3_t_2*s_3 - a_o3_t*c_3
+    a_o3_r0_y = a_o3_t*s_3 + a_o3_t_2*c_3
+    # (rrrrrr-A56) acceleration of the origin of joint 4
     a_o4_x = a_o3_r0_x - W_3_xx*rrrrrr_joint4_offset_x
     a_o4_y = a_o3_r0_y + B_3_yx*rrrrrr_joint4_offset_x
-    a_o4_z = a_o3_t_2 + B_3_zx*rrrrrr_joint4_offset_x
-    # (rrrrrr-N23) acceleration of the reference point of link 4, less gravity
+    a_o4_z = a_o3_t_3 + B_3_zx*rrrrrr_joint4_offset_x
+    # (rrrrrr-N15) acceleration of the reference point of link 4, less gravity
     acc_4_x = a_o4_z*s_4 + c_4_t*g_r4_y - a_o4_y*c_4_t - g_r1_x*s_4
     acc_4_y = c_4_t*g_r1_x + g_r4_y*s_4 - a_o4_y*s_4 - a_o4_z*c_4_t
     acc_4_z = a_o4_x - g_r4_x
-    # (rrrrrr-A46) angular acceleration of link 4
-    alpha_4_x = zeta_4_x + alpha_3_z*s_4 - alpha_3_y*c_4_t
-    alpha_4_y = -zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
-    alpha_4_z = alpha_3_x + qdd_4
-    # (rrrrrr-A50) acceleration tensor of link 4
+    # (rrrrrr-A42) angular acceleration of link 4
+    alpha_4_x = alpha_3_z*s_4 - zeta_4_x - alpha_3_y*c_4_t
+    alpha_4_y = zeta_4_y - alpha_3_y*s_4 - alpha_3_z*c_4_t
+    alpha_4_z = alpha_3_x + qdd_1_t_6
+    # (rrrrrr-A44) acceleration tensor of link 4
     B_4_xy = W_4_xy - alpha_4_z
     B_4_xz = W_4_xz + alpha_4_y
     B_4_yx = W_4_xy + alpha_4_z
     B_4_yz = W_4_yz - alpha_4_x
     B_4_zx = W_4_xz - alpha_4_y
     B_4_zy = W_4_yz + alpha_4_x
-    # (rrrrrr-N51) inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrrr-N72) inertia moment of the links that turn with link 4, about their reference points
     mu_4_x = (
     B_4_yx*J_4_xz + B_4_zx*J_4_yz + B_4_zy*Sigma_4_yy - B_4_yz*Sigma_4_zz - J_4_xy*(W_4_t_2 -
         W_4_t_3) - acc_4_y*h_4_x - acc_4_z*h_4_y
@@ -9142,18 +7865,21 @@ def _legs_rrrrrr(c, k, x, s, f):
     B_4_yx*Sigma_4_xx + acc_4_x*h_4_y + acc_4_y*h_4_z - B_4_xy*Sigma_4_yy - B_4_xz*J_4_xy -
         B_4_yz*J_4_xz - J_4_yz*(W_4_t - W_4_t_2)
     )
-    # (rrrrrr-A52) angular acceleration of link 5
+    # (rrrrrr-A46) angular acceleration of link 5
     alpha_5_x = zeta_5_x + alpha_4_z*s_5 - alpha_4_y*c_5_t
     alpha_5_y = -zeta_5_y - alpha_4_y*s_5 - alpha_4_z*c_5_t
-    alpha_5_z = alpha_4_x + qdd_5
-    # (rrrrrr-A56) acceleration tensor of link 5
+    alpha_5_z = (
+    alpha_4_x + inv_w_1_t_69*(qdd_1_t_2*w_1_t_17 + qdd_1_t_3*w_1_t_28 + qdd_1_t_5*w_1_t_21 +
+        rel_y*w_1_t_16 - qdd_1_t_4*w_1_t_25 - qdd_1_t_6*w_1_t_18)
+    )
+    # (rrrrrr-A50) acceleration tensor of link 5
     B_5_xy = W_5_xy - alpha_5_z
     B_5_xz = W_5_xz + alpha_5_y
     B_5_yx = W_5_xy + alpha_5_z
     B_5_yz = W_5_yz - alpha_5_x
     B_5_zx = W_5_xz - alpha_5_y
     B_5_zy = W_5_yz + alpha_5_x
-    # (rrrrrr-N41) inertia moment of the links that turn with link 5, about their reference points
+    # (rrrrrr-N64) inertia moment of the links that turn with link 5, about their reference points
     mu_5_x = (
     B_5_yx*J_5_xz + B_5_zy*Sigma_5_yy + J_5_yz*(W_5_t_2 - W_5_t_3) + acc_5_z*h_5_y -
         B_5_yz*Sigma_5_zz - B_5_zx*J_5_xy - acc_5_y*h_5_z
@@ -9166,19 +7892,19 @@ def _legs_rrrrrr(c, k, x, s, f):
     B_5_xz*J_5_yz + B_5_yx*Sigma_5_xx + J_5_xy*(W_5_t - W_5_t_2) + acc_5_y*h_5_x -
         B_5_xy*Sigma_5_yy - B_5_yz*J_5_xz - acc_5_x*h_5_y
     )
-    # (rrrrrr-N55) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
+    # (rrrrrr-N74) moment about joint 4 of the links from 4 outwards, the force at the connection point left out
     N_4_x = mu_4_x + mu_5_z
     N_4_y = mu_4_y - c_5_t*mu_5_x - mu_5_y*s_5
     N_4_z = mu_4_z + mu_5_x*s_5 - c_5_t*mu_5_y
-    # (rrrrrr-N29) inertia force of link 4 less its weight
+    # (rrrrrr-N19) inertia force of link 4 less its weight
     f_4_x = B_4_xz*h_4_x + acc_4_x*rrrrrr_link4_mass - B_4_xy*h_4_y - h_4_z*(W_4_t_2 + W_4_t_3)
     f_4_y = B_4_yx*h_4_z + B_4_yz*h_4_x + acc_4_y*rrrrrr_link4_mass + h_4_y*(W_4_t + W_4_t_3)
     f_4_z = B_4_zx*h_4_z + acc_4_z*rrrrrr_link4_mass - B_4_zy*h_4_y - h_4_x*(W_4_t + W_4_t_2)
-    # (rrrrrr-N13) acceleration of the reference point of link 3, less gravity
+    # (rrrrrr-N9) acceleration of the reference point of link 3, less gravity
     acc_3_x = a_o3_r0_x - g_r4_x
     acc_3_y = a_o3_r0_y - g_r4_y
-    acc_3_z = a_o3_t_2 - g_r1_x
-    # (rrrrrr-N65) inertia moment of the links that turn with link 3, about their reference points
+    acc_3_z = a_o3_t_3 - g_r1_x
+    # (rrrrrr-N82) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
         B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
@@ -9191,66 +7917,67 @@ def _legs_rrrrrr(c, k, x, s, f):
     B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
         B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
     )
-    # (rrrrrr-N29) inertia force of link 4 less its weight
+    # (rrrrrr-N19) inertia force of link 4 less its weight
     f_4_r0_x = -c_4_t*f_4_x - f_4_y*s_4
     f_4_r0_y = f_4_x*s_4 - c_4_t*f_4_y
-    # (rrrrrr-N69) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrrr-N84) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_x = N_4_z + mu_3_x
     N_3_y = mu_3_y - N_4_x*c_4_t - N_4_y*s_4 - f_4_r0_y*rrrrrr_joint4_offset_x
     N_3_z = mu_3_z + N_4_x*s_4 + f_4_r0_x*rrrrrr_joint4_offset_x - N_4_y*c_4_t
-    # (rrrrrr-N19) inertia force of link 3 less its weight
+    # (rrrrrr-N13) inertia force of link 3 less its weight
     f_3_x = B_3_xy*h_3_y + B_3_xz*h_3_z + acc_3_x*rrrrrr_link3_mass - W_3_xx*h_3_x
     f_3_y = B_3_yx*h_3_x + B_3_yz*h_3_z + acc_3_y*rrrrrr_link3_mass - h_3_y*(W_3_t + W_3_t_3)
     f_3_z = B_3_zx*h_3_x + B_3_zy*h_3_y + acc_3_z*rrrrrr_link3_mass - h_3_z*(W_3_t + W_3_t_2)
-    # (rrrrrr-N73) inertia force of the links from 3 outwards, the last link left out
+    # (rrrrrr-N86) inertia force of the links from 3 outwards, the last link left out
     T_3_x = f_3_x + f_4_z
     T_3_y = f_3_y + f_4_r0_x
     T_3_z = f_3_z + f_4_r0_y
-    # (rrrrrr-N83) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrrr-N94) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
-    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_t +
-        g_r3_y*h_2_z - B_2_zx*J_2_xy - g_r1_x*h_2_y
+    B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
+        - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
     )
     mu_2_y = (
-    B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx - J_2_xz*(W_2_t - W_2_t_3) -
-        Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z
+    B_2_zy*J_2_xy + Sigma_2_zz*alpha_1_t_2 + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx -
+        J_2_xz*(W_2_t - W_2_t_3) - g_r3_x*h_2_z
     )
     mu_2_z = (
-    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_xz*alpha_1_t + g_r3_x*h_2_y -
-        B_2_xy*Sigma_2_yy - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
+    B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + J_2_yz*alpha_1_t_2 + g_r3_x*h_2_y -
+        B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - g_r3_y*h_2_x
     )
-    # (rrrrrr-N87) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrrr-N96) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_x = mu_2_x + N_3_x*c_3 - N_3_y*s_3
     N_2_y = mu_2_y + N_3_x*s_3 + N_3_y*c_3 - T_3_z*rrrrrr_joint3_offset_x
     N_2_z = N_3_z + mu_2_z + rrrrrr_joint3_offset_x*(T_3_x*s_3 + T_3_y*c_3)
-    # (rrrrrr-N101) inertia moment of the links that turn with link 1, about their reference points
-    mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrrrr-N105) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrrr-N106) inertia moment of the links that turn with link 1, about their reference points
+    mu_1_z = -J_1_xx*qdd_1_t_5 - g_r1_x*h_1_y - g_r1_y*h_1_z
+    # (rrrrrr-N108) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + N_2_x*s_2 - N_2_y*c_2_t
-    # (rrrrrr-N113) force at the connection point that balances the leg's inertia and weight along all freedoms
-    G_t = (
-    N_2_z*w_1_t_33 + N_4_z*(rrrrrr_platform_joint_offset_x*(w_1_t_12*w_1_t_5 - w_1_t_15*w_1_t_7) -
-        end_p1_r8_y*w_1_t_35) + mu_5_z*(n_m2_t*w_1_t_35 + v_4_z*(w_1_t_36*w_1_t_5 -
-        w_1_t_18*w_1_t_7) - n_m1_r0_y*(v_1_y*w_1_t_12 + w_1_t_21*w_1_t_7 - v_1_z*w_1_t_36)) -
-        N_1_z*(end_p1_r8_y*(n_m1_r0_y*w_1_t_21 + v_4_z*w_1_t_18) +
-        rrrrrr_platform_joint_offset_x*(w_1_t_26 + w_1_t_30*w_1_t_8 - w_1_t_28*w_1_t_6)) -
-        N_3_z*w_1_t_34
+    # (rrrrrr-N114) force at the connection point that balances the leg's inertia and weight along all freedoms
+    G_t = inv_w_1_t_69*mu_5_z
+    G_t_2 = inv_w_1_t_101*(G_t*w_1_t_18 - N_4_z)
+    G_t_3 = inv_w_1_t_150*(G_t*w_1_t_21 + G_t_2*w_1_t_36 - N_1_z)
+    G_t_4 = inv_w_1_t_194*(G_t*w_1_t_25 + G_t_2*w_1_t_42 - N_2_z - G_t_3*w_1_t_58)
+    G_t_5 = (
+    inv_w_1_t_222*(N_3_z + G_t*w_1_t_28 + G_t_3*w_1_t_64 + G_t_4*w_1_t_76 - G_t_2*w_1_t_47)
     )
-    G_t_2 = (
-    N_1_z*(n_m1_r0_y*w_1_t_46 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_10) +
-        N_3_z*(n_m1_r0_y*w_1_t_50 - n_m2_t*rrrrrr_platform_joint_offset_x*w_1_t_43) +
-        N_4_z*(end_p1_r8_y*w_1_t_20 + rrrrrr_platform_joint_offset_x*w_1_t_11) +
-        mu_5_z*(n_m1_r0_y*w_1_t_51 - n_m2_t*w_1_t_20) - N_2_z*w_1_t_49
+    G_t_6 = size*(G_t_2*w_1_t_34 + G_t_3*w_1_t_56 + G_t_4*w_1_t_74 - G_t_5*w_1_t_86)
+    G_t_7 = (
+    size*(G_t_2*w_1_t_35 + G_t_3*w_1_t_57 + G_t_4*w_1_t_75 - G_t*w_1_t_17 - G_t_5*w_1_t_87)
     )
-    # (rrrrrr-N121) leg force on the platform without actuation and without the mass at the connection point
-    c_x = G_t*inv_w_1_t_113 + h_5_x*(W_5_t_2 + W_5_t_3) - B_5_xy*h_5_y - B_5_xz*h_5_z
+    # (rrrrrr-N130) leg force on the platform without actuation and without the mass at the connection point
+    c_x = (
+    G_t_3*w_1_t_53 + G_t_4*w_1_t_71 + W_5_xx*h_5_x - B_5_xy*h_5_y - B_5_xz*h_5_z - G_t_5*w_1_t_83
+    )
     c_y = (
-    h_5_y*(W_5_t + W_5_t_3) + inv_w_1_t_113*(N_1_z*end_p1_r8_y*w_1_t_37 +
-        N_3_z*end_p1_r8_y*w_1_t_45 + N_4_z*end_p1_r8_y*w_1_t_16 - N_2_z*w_1_t_42 -
-        mu_5_z*w_1_t_17) - B_5_yx*h_5_x - B_5_yz*h_5_z
+    G_t_5*w_1_t_84 + h_5_y*(W_5_t + W_5_t_3) - B_5_yx*h_5_x - B_5_yz*h_5_z - G_t*w_1_t_16 -
+        G_t_2*w_1_t_32 - G_t_3*w_1_t_54 - G_t_4*w_1_t_72
     )
-    c_z = h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x - B_5_zy*h_5_y - G_t_2*inv_w_1_t_113
-    # (rrrrrr-N131) leg force on the platform without actuation, the last link's mass included
+    c_z = (
+    G_t_2*w_1_t_33 + G_t_3*w_1_t_55 + G_t_4*w_1_t_73 + h_5_z*(W_5_t + W_5_t_2) - B_5_zx*h_5_x -
+        B_5_zy*h_5_y - G_t_5*w_1_t_85
+    )
+    # (rrrrrr-N140) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_5_x*rrrrrr_link5_mass
     c_true_y = c_y - acc_5_y*rrrrrr_link5_mass
     c_true_z = c_z - acc_5_z*rrrrrr_link5_mass
@@ -9266,24 +7993,37 @@ def _legs_rrrrrr(c, k, x, s, f):
     axis_x_rrrrrr_axes5_z*c_true_x + axis_y_rrrrrr_axes5_in_base_z*c_true_y +
         axis_z_rrrrrr_axes5_in_base_z*c_true_z
     )
-    # (rrrrrr-N117) moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_x = N_1_z*o_1_t + N_3_z*o_3_t + N_4_z*o_4_t + mu_5_z*o_5_t - N_2_z*o_2_t
-    G_m_y = N_1_z*o_1_y + N_2_z*o_2_y + N_3_z*o_3_y + N_4_z*o_4_y + mu_5_z*o_5_y
-    G_m_z = N_1_z*o_1_t_2 + N_3_z*o_3_t_2 + N_4_z*o_4_t_2 + mu_5_z*o_5_t_2 - N_2_z*o_2_t_2
-    # (rrrrrr-N126) moment of the leg on the platform without actuation
+    # (rrrrrr-N126) moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_t = G_t_6*end_p1_r8_y
+    G_m_t_2 = G_t_7*end_p1_r8_y
+    G_m_y = G_t_7*end_p1_r6_x - G_t_6*end_p1_r8_x
+    # (rrrrrr-N135) moment of the leg on the platform without actuation
     c_m_in_base_x = (
-    -G_m_x*axis_x_rrrrrr_axes5_x - G_m_y*axis_y_rrrrrr_axes5_in_base_x -
-        G_m_z*axis_z_rrrrrr_axes5_in_base_x
+    G_m_t_2*axis_z_rrrrrr_axes5_in_base_x - G_m_t*axis_x_rrrrrr_axes5_x -
+        G_m_y*axis_y_rrrrrr_axes5_in_base_x
     )
     c_m_in_base_y = (
-    -G_m_x*axis_x_rrrrrr_axes5_y - G_m_y*axis_y_rrrrrr_axes5_in_base_y -
-        G_m_z*axis_z_rrrrrr_axes5_in_base_y
+    G_m_t_2*axis_z_rrrrrr_axes5_in_base_y - G_m_t*axis_x_rrrrrr_axes5_y -
+        G_m_y*axis_y_rrrrrr_axes5_in_base_y
     )
     c_m_in_base_z = (
-    -G_m_x*axis_x_rrrrrr_axes5_z - G_m_y*axis_y_rrrrrr_axes5_in_base_z -
-        G_m_z*axis_z_rrrrrr_axes5_in_base_z
+    G_m_t_2*axis_z_rrrrrr_axes5_in_base_z - G_m_t*axis_x_rrrrrr_axes5_z -
+        G_m_y*axis_y_rrrrrr_axes5_in_base_z
     )
-    ok = (abs(w_1_t_24) > _TOLERANCE * w_1_t) & (abs(-qd_1_t_17) > _TOLERANCE * w_1_t)
+    # (rrrrrr-V29) moment part of reciprocal wrench 2
+    o_2_in_base_x = (
+    axis_y_rrrrrr_axes5_in_base_x*o_2_y + axis_z_rrrrrr_axes5_in_base_x*o_2_t_2 -
+        axis_x_rrrrrr_axes5_x*o_2_t
+    )
+    o_2_in_base_y = (
+    axis_y_rrrrrr_axes5_in_base_y*o_2_y + axis_z_rrrrrr_axes5_in_base_y*o_2_t_2 -
+        axis_x_rrrrrr_axes5_y*o_2_t
+    )
+    o_2_in_base_z = (
+    axis_y_rrrrrr_axes5_in_base_z*o_2_y + axis_z_rrrrrr_axes5_in_base_z*o_2_t_2 -
+        axis_x_rrrrrr_axes5_z*o_2_t
+    )
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
     return (
     ok, (), (c_true_in_base_x, c_true_in_base_y, c_true_in_base_z, c_m_in_base_x, c_m_in_base_y,
         c_m_in_base_z, w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, o_2_in_base_x, o_2_in_base_y,
@@ -9368,10 +8108,14 @@ def _potential_rrrrrr(c, k, x, s, f):
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
     s_1 = cos(q_1)
+    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
+    # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d_Gamma_4_t = c_5_t*h_5_x + h_5_y*s_5
     # (rrrrrr-A11) acceleration of the connection point at zero joint accelerations
     bias_t = rrrrrr_joint2_offset_x*s_2
     bias_t_2 = c_2_t*rrrrrr_joint2_offset_x
-    # (rrrrrr-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r1_y = -c_1_t*g_r0_y - g_r0_x*s_1
     # (V1) potential energy
     b_r1_x = b_r0_y*s_1 - b_r0_x*c_1_t
@@ -9379,12 +8123,9 @@ def _potential_rrrrrr(c, k, x, s, f):
     b_r3_x = b_r0_z*s_2 - b_r1_y*c_2_t
     b_r3_y = -b_r0_z*c_2_t - b_r1_y*s_2
     potential_t_2 = b_r3_y - bias_t_2
-    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
-    h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
     # (rrrrrr-G11) first moment of link 5 about the connection point
-    h_5_r0_x = -c_5_t*h_5_x - h_5_y*s_5
     h_5_r0_y = h_5_x*s_5 - c_5_t*h_5_y
-    h_5_r2_x = -c_4_t*h_5_z - h_5_r0_x*s_4
+    h_5_r2_x = d_Gamma_4_t*s_4 - c_4_t*h_5_z
     # (V1) potential energy
     potential_t_3 = (
     h_2_x + b_r3_x*rrrrrr_link1_mass + c_2_t*h_1_y + c_3*h_3_x + c_3*h_4_x + c_3*h_5_r0_y +
@@ -9400,8 +8141,8 @@ def _potential_rrrrrr(c, k, x, s, f):
     )
     potential_t_5 = (
     h_1_z + h_2_z + h_3_z + b_r1_x*rrrrrr_link1_mass + b_r1_x*rrrrrr_link2_mass +
-        b_r1_x*rrrrrr_link3_mass + b_r1_x*rrrrrr_link4_mass + c_4_t*h_4_y + h_4_z*s_4 + h_5_z*s_4
-        - c_4_t*h_5_r0_x
+        b_r1_x*rrrrrr_link3_mass + b_r1_x*rrrrrr_link4_mass + c_4_t*d_Gamma_4_t + c_4_t*h_4_y +
+        h_4_z*s_4 + h_5_z*s_4
     )
     potential_t_6 = (
     potential_t_3*(g_r0_z*s_2 - c_2_t*g_r1_y) + potential_t_4*(-c_2_t*g_r0_z - g_r1_y*s_2) +
@@ -9594,13 +8335,13 @@ def _closure_rrrrrr_rrrrrr(c, k, x, s, f):
     end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
     end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_2 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
-    w_1_t_3 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_2 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
     # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_5_t*end_p1_r8_x - end_p1_r8_y*s_5
     # (rrrrrr-V13) force part of reciprocal wrench 1
-    w_1_t_4 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
-    w_1_t_5 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_3 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_4 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
     # (rrrrrr-V12) direction 2 of the moment that the platform joint transmits
     n_m2_t = c_5_t*end_p1_r6_x
     # (rrrrrr-K1) from the base point to the connection point
@@ -9626,15 +8367,15 @@ def _closure_rrrrrr_rrrrrr(c, k, x, s, f):
     S_r4_x = S_r3_x*c_3 + S_r3_y*s_3
     S_r4_y = S_r3_y*c_3 - S_r3_x*s_3
     S_r6_y = -S_r1_x*c_4_t - S_r4_y*s_4
-    # (rrrrrr-N132) from the connection point as the links reach it to the platform's
+    # (rrrrrr-N141) from the connection point as the links reach it to the platform's
     gap_x = S_r4_x*s_5 - r_1_r6_x - S_r6_y*c_5_t
     gap_y = -r_1_r6_y - S_r4_x*c_5_t - S_r6_y*s_5
     gap_z = S_r1_x*s_4 - r_1_r4_x - S_r4_y*c_4_t
     ok = True
     return (
     ok, (), (gap_x, gap_y, gap_z, v_1_x, v_1_y, v_1_z, v_2_x, v_2_y, v_2_z, v_3_x, v_3_y, v_3_z,
-        v_4_z, rrrrrr_platform_joint_offset_x, -end_p1_r6_x, -w_1_t_2, -w_1_t_3, -w_1_t_3,
-        n_m1_r0_y, -end_p1_r8_x, -w_1_t_4, -w_1_t_5, -w_1_t_5, n_m2_t, end_p1_r8_y,),
+        v_4_z, rrrrrr_platform_joint_offset_x, -end_p1_r6_x, -w_1_t, -w_1_t_2, -w_1_t_2,
+        n_m1_r0_y, -end_p1_r8_x, -w_1_t_3, -w_1_t_4, -w_1_t_4, n_m2_t, end_p1_r8_y,),
     )
 
 
@@ -9656,11 +8397,12 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
 (),
 ('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
             'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'J_4_xx', 'J_4_xy', 'J_4_xz', 'J_4_yy',
-            'J_4_yz', 'J_4_zz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz',
-            'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz',
-            'Sigma_4_xx', 'Sigma_4_yy', 'Sigma_4_zz', 'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz',
-            'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x',
-            'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y', 'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z',
+            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_1_t',
+            'Jc_2_t_2', 'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'Sigma_2_xx', 'Sigma_2_yy',
+            'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy',
+            'Sigma_4_zz', 'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z',
+            'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x',
+            'h_4_y', 'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'hc_2_t', 'hc_3_x',
             'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz',
             'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz',
             'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz',
@@ -9669,7 +8411,7 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'w_1_t'),
+            'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -9714,17 +8456,17 @@ arrays=(('M', (6, 6)),),
 (),
 ('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
             'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'J_4_xx', 'J_4_xy', 'J_4_xz', 'J_4_yy',
-            'J_4_yz', 'J_4_zz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz',
-            'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y', 'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z',
+            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_1_t',
+            'Jc_2_t_2', 'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'h_2_x', 'h_2_y', 'h_3_y', 'h_3_z',
+            'h_4_y', 'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'hc_2_t', 'hc_3_x',
             'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz',
             'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz',
             'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz',
             'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x',
-            'rrrrrr_joint5_offset_x', 'rrrrrr_link3_mass', 'rrrrrr_link4_mass',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'w_1_t'),
+            'rrrrrr_joint5_offset_x', 'rrrrrr_platform_joint_axis_platform_x',
+            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
+            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8),
@@ -9773,7 +8515,7 @@ arrays=(('Z', (6,)),),
             'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'w_1_t'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -9812,7 +8554,7 @@ arrays=(('H', (6, 6)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'w_1_t'),
+            'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8),
@@ -9856,7 +8598,7 @@ arrays=(('required', (6,)), ('H', (6, 6))),
             'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'w_1_t'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
@@ -9930,7 +8672,7 @@ arrays=(('qd', (30,)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'w_1_t'),
+            'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -9966,7 +8708,7 @@ arrays=(('qdd', (30,)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'w_1_t'),
+            'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
@@ -10008,7 +8750,7 @@ arrays=(('leg_force', (6, 6)), ('drive', (6, 6))),
             'rrrrrr_link4_mass', 'rrrrrr_link5_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'w_1_t'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),

@@ -401,10 +401,6 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real size_ = root(size_t_7);
         /* (rprs-K18) cosine of the angle of joint 3 from its reference direction */
         const real inv_size_t_6 = 1/size_t_2;
-        /* (rprs-G2) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = rprs_link2_centre_of_mass_x*rprs_link2_mass;
-        const real h_2_y = rprs_link2_centre_of_mass_y*rprs_link2_mass;
-        const real h_2_z = rprs_link2_centre_of_mass_z*rprs_link2_mass;
         /* (rprs-G3) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = rprs_link2_centre_of_mass_x*rprs_link2_centre_of_mass_x;
         const real J_2_t_2 = J_2_t + rprs_link2_centre_of_mass_y*rprs_link2_centre_of_mass_y +
@@ -426,6 +422,10 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real J_3_yz = rprs_link3_inertia_yz -
             rprs_link3_centre_of_mass_y*rprs_link3_centre_of_mass_z*rprs_link3_mass;
         const real J_3_zz = rprs_link3_inertia_zz - rprs_link3_mass*(J_3_t_3 - J_3_t_4);
+        /* (rprs-G2) first moment of link 2 about the origin of link 2 */
+        const real h_2_x = rprs_link2_centre_of_mass_x*rprs_link2_mass;
+        const real h_2_y = rprs_link2_centre_of_mass_y*rprs_link2_mass;
+        const real h_2_z = rprs_link2_centre_of_mass_z*rprs_link2_mass;
         /* (rprs-G5) first moment of link 3 about the connection point */
         const real h_3_x = rho_tip_3_x*rprs_link3_mass;
         const real h_3_y = rprs_link3_centre_of_mass_y*rprs_link3_mass;
@@ -441,7 +441,7 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
         const real J_star_t_14 = rprs_link3_mass*(size_t_6 - size_t_4);
         const real J_star_t_15 = rprs_link3_mass*rprs_platform_point_y*rprs_platform_point_z;
         const real J_star_t_16 = rprs_link3_mass*(size_t_6 - size_t_5);
-        /* (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r0_x = gravity_x*rprs_base_frame_xy + gravity_y*rprs_base_frame_yy +
             gravity_z*rprs_base_frame_zy;
@@ -449,9 +449,9 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
             gravity_z*rprs_base_frame_zz;
         const real g_r0_z = gravity_x*rprs_base_frame_xx + gravity_y*rprs_base_frame_yx +
             gravity_z*rprs_base_frame_zx;
-        /* (rprs-N15) half the trace of that inertia tensor */
+        /* (rprs-N23) half the trace of that inertia tensor */
         const real trace_J_3 = R(0.5)*J_3_xx + R(0.5)*J_3_yy + R(0.5)*J_3_zz;
-        /* (rprs-N16) second moment of mass of the links that turn with link 3 */
+        /* (rprs-N24) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_xx = trace_J_3 - J_3_xx;
         const real Sigma_3_yy = trace_J_3 - J_3_yy;
         const real Sigma_3_zz = trace_J_3 - J_3_zz;
@@ -561,7 +561,7 @@ int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1098 mul, 828 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 1104 mul, 825 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -768,6 +768,7 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
+        const real h_2_x = m->h_2_x[i];
         const real h_2_y = m->h_2_y[i];
         const real h_2_z = m->h_2_z[i];
         const real h_3_x = m->h_3_x[i];
@@ -859,42 +860,47 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
             axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z;
         const real axis_x_rprs_axes3_z = axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
             axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x;
+        /* (rprs-N20) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_t = h_2_x + R(0.5)*q_2*rprs_link2_mass;
+        /* (rprs-V5) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rprs-V6) reciprocal vector 2 */
         const real inv_r_1_t_2 = 1/r_1_t_2;
         const real w_2_t = inv_r_1_t_2*r_1_t;
         const real _r1_x = s_3 + c_3*w_2_t;
         const real _r1_y = s_3*w_2_t - c_3;
-        /* (rprs-N8) coefficient of the acceleration in: inertia force of link 2 less its weight */
-        const real d_f_2_t = rprs_link2_mass*(-_r1_x*c_3 - _r1_y*s_3);
-        const real d_f_2_t_2 = rprs_link2_mass*(_r1_x*s_3 - _r1_y*c_3);
         /* (rprs-V7) reciprocal vector 3 */
         const real w_3_t = c_3*inv_r_1_t_2;
         const real w_3_t_2 = inv_r_1_t_2*s_3;
-        /* (rprs-A15) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_v_1_z*s_3;
-        const real d_alpha_1_t_2 = c_3*inv_v_1_z;
-        /* (rprs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xz*d_alpha_1_t - J_3_yz*d_alpha_1_t_2;
-        const real d_mu_3_zy = h_3_x + J_3_zz*w_3_t_2;
-        /* (rprs-N32) coefficient of the acceleration in: force along axis 2 of the distal links' inertia
+        /* (rprs-N40) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_r1_y = -c_3*d_f_2_t_2 - d_f_2_t*s_3;
-        /* (rprs-N41) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_1_x = c_3*h_3_x + h_3_y*s_3 + inv_v_1_z*(J_2_xx + s_3*(J_3_xx*s_3 -
+            J_3_xy*c_3) - c_3*(J_3_xy*s_3 - J_3_yy*c_3));
+        /* (rprs-N37) coefficient of the acceleration in: force along axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t = inv_r_1_t_2*r_1_t*rprs_link2_mass;
+        const real _r1_y_2 = d_Gamma_2_t*s_3 - c_3*rprs_link2_mass;
+        /* (rprs-N28) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t = inv_v_1_z*(J_3_xz*s_3 - J_3_yz*c_3);
+        const real d_Gamma_3_t_2 = J_3_zz*inv_r_1_t_2;
+        const real d_Gamma_3_x = c_3*d_Gamma_3_t_2 - h_3_y;
+        const real d_Gamma_3_y = h_3_x + d_Gamma_3_t_2*s_3;
+        /* (rprs-A19) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = inv_v_1_z*s_3;
+        const real d_alpha_3_t_2 = c_3*inv_v_1_z;
+        /* (rprs-N46) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = h_3_y*w_3_t - _r1_x*(d_f_2_t_2*s_3 - c_3*d_f_2_t) -
-            w_3_t*(J_3_zz*w_3_t - h_3_y);
-        const real d_c_xy = h_3_y*w_3_t_2 - _r1_x*d_Gamma_2_r1_y - d_mu_3_zy*w_3_t;
-        const real d_c_xz = d_alpha_1_t_2*h_3_z - d_mu_3_t*w_3_t;
-        const real d_c_yz = d_alpha_1_t*h_3_z - d_mu_3_t*w_3_t_2;
-        const real d_c_zz = -d_alpha_1_t*h_3_y - d_alpha_1_t_2*h_3_x - inv_v_1_z*(J_2_xx*inv_v_1_z
-            + s_3*(h_3_y + J_3_xx*d_alpha_1_t - J_3_xy*d_alpha_1_t_2) - c_3*(J_3_xy*d_alpha_1_t -
-            h_3_x - J_3_yy*d_alpha_1_t_2));
-        /* (rprs-N43) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + d_mu_3_zy*w_3_t_2 + h_3_x*w_3_t_2;
+        const real d_c_xx = h_3_y*w_3_t - _r1_x*(c_3*d_Gamma_2_t + rprs_link2_mass*s_3) -
+            d_Gamma_3_x*w_3_t;
+        const real d_c_xy = h_3_y*w_3_t_2 - _r1_x*_r1_y_2 - d_Gamma_3_y*w_3_t;
+        const real d_c_xz = d_alpha_3_t_2*h_3_z - d_Gamma_3_t*w_3_t;
+        const real d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*w_3_t_2;
+        /* (rprs-N48) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx + _r1_y*_r1_y_2 + d_Gamma_3_y*w_3_t_2 + h_3_x*w_3_t_2;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx - d_c_zz;
+        const real Q_t_3 = d_c_xx + d_Gamma_1_x*inv_v_1_z + d_alpha_3_t*h_3_y +
+            d_alpha_3_t_2*h_3_x;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_rprs_axes3_x*d_c_xy + axis_z_rprs_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_rprs_axes3_in_base_x;
@@ -992,33 +998,33 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
         /* (rprs-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_v_1_z*rel_o_z;
         const real qdd_3_o = inv_r_1_t_2*(-c_3*rel_o_x - rel_o_y*s_3);
-        /* (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
         const real acc_2_o_z = rel_o_x*s_3 - g_r0_z - c_3*rel_o_y - qdd_3_o*r_1_t;
-        /* (rprs-N9) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (rprs-N6) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_o_t = acc_2_o_z*rprs_link2_mass;
-        /* (rprs-N27) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rprs-N33) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = J_2_xx*qdd_1_o - g_r1_x*h_2_y - g_r1_y*h_2_z;
-        /* (rprs-N11) remainder without the acceleration in: acceleration of the reference point of link
-           3, less gravity */
+        /* (rprs-N8) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
         const real acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_o_z = u_1_tip_z - g_r1_x;
-        /* (rprs-A16) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rprs-A15) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_3;
         const real alpha_1_o_t_2 = c_3*qdd_1_o;
-        /* (rprs-A21) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rprs-A20) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_1_o_t + zeta_3_x;
         const real alpha_3_o_y = zeta_3_y - alpha_1_o_t_2;
-        /* (rprs-A23) acceleration tensor of link 3 */
+        /* (rprs-A22) acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = -alpha_3_o_y - zeta_3_y;
         const real B_3_o_zy = alpha_3_o_x + zeta_3_x;
-        /* (rprs-N19) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rprs-N26) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             Sigma_3_zz*alpha_1_o_t + acc_3_o_z*h_3_y - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z;
@@ -1027,13 +1033,13 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
             acc_3_o_z*h_3_x;
         const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_o_t
             + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_yz*alpha_1_o_t_2 - acc_3_o_x*h_3_y;
-        /* (rprs-N30) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rprs-N35) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_3_o_x*s_3 - c_3*mu_3_o_y;
-        /* (rprs-N39) remainder without the acceleration in: force at the connection point that balances
+        /* (rprs-N44) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_r_1_t_2*(mu_3_o_z + f_2_o_t*r_1_t);
-        /* (rprs-N42) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rprs-N47) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = alpha_1_o_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y -
             G_o_t*c_3 - f_2_o_t*s_3;
@@ -1041,7 +1047,7 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
             B_3_o_yx*h_3_x - G_o_t*s_3;
         const real c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y -
             N_1_o_z*inv_v_1_z;
-        /* (rprs-N44) velocity and gravity terms of the leg force */
+        /* (rprs-N49) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_rprs_axes3_x*c_o_x - axis_y_rprs_axes3_in_base_x*c_o_y -
             axis_z_rprs_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_rprs_axes3_y*c_o_x - axis_y_rprs_axes3_in_base_y*c_o_y -
@@ -1299,7 +1305,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 558 mul, 429 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 564 mul, 426 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1432,6 +1438,7 @@ INLINE void M_legs_rprs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_3_zz = m->J_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real h_2_x = m->h_2_x[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -1521,42 +1528,46 @@ INLINE void M_legs_rprs(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z;
         const real axis_x_rprs_axes3_z = axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
             axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x;
+        /* (rprs-N20) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_t = h_2_x + R(0.5)*q_2*rprs_link2_mass;
+        /* (rprs-V5) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rprs-V6) reciprocal vector 2 */
         const real inv_r_1_t_2 = 1/r_1_t_2;
         const real w_2_t = inv_r_1_t_2*r_1_t;
         const real _r1_x = s_3 + c_3*w_2_t;
-        const real _r1_y = s_3*w_2_t - c_3;
-        /* (rprs-N8) coefficient of the acceleration in: inertia force of link 2 less its weight */
-        const real d_f_2_t = rprs_link2_mass*(-_r1_x*c_3 - _r1_y*s_3);
-        const real d_f_2_t_2 = rprs_link2_mass*(_r1_x*s_3 - _r1_y*c_3);
         /* (rprs-V7) reciprocal vector 3 */
         const real w_3_t = c_3*inv_r_1_t_2;
         const real w_3_t_2 = inv_r_1_t_2*s_3;
-        /* (rprs-A15) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_v_1_z*s_3;
-        const real d_alpha_1_t_2 = c_3*inv_v_1_z;
-        /* (rprs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xz*d_alpha_1_t - J_3_yz*d_alpha_1_t_2;
-        const real d_mu_3_zy = h_3_x + J_3_zz*w_3_t_2;
-        /* (rprs-N32) coefficient of the acceleration in: force along axis 2 of the distal links' inertia
+        /* (rprs-N40) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_2_r1_y = -c_3*d_f_2_t_2 - d_f_2_t*s_3;
-        /* (rprs-N41) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_1_x = c_3*h_3_x + h_3_y*s_3 + inv_v_1_z*(J_2_xx + s_3*(J_3_xx*s_3 -
+            J_3_xy*c_3) - c_3*(J_3_xy*s_3 - J_3_yy*c_3));
+        /* (rprs-N37) coefficient of the acceleration in: force along axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t = inv_r_1_t_2*r_1_t*rprs_link2_mass;
+        const real _r1_y = d_Gamma_2_t*s_3 - c_3*rprs_link2_mass;
+        /* (rprs-N28) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t = inv_v_1_z*(J_3_xz*s_3 - J_3_yz*c_3);
+        const real d_Gamma_3_t_2 = J_3_zz*inv_r_1_t_2;
+        const real d_Gamma_3_x = c_3*d_Gamma_3_t_2 - h_3_y;
+        const real d_Gamma_3_y = h_3_x + d_Gamma_3_t_2*s_3;
+        /* (rprs-A19) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = inv_v_1_z*s_3;
+        const real d_alpha_3_t_2 = c_3*inv_v_1_z;
+        /* (rprs-N46) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = h_3_y*w_3_t - _r1_x*(d_f_2_t_2*s_3 - c_3*d_f_2_t) -
-            w_3_t*(J_3_zz*w_3_t - h_3_y);
-        const real d_c_xy = h_3_y*w_3_t_2 - _r1_x*d_Gamma_2_r1_y - d_mu_3_zy*w_3_t;
-        const real d_c_xz = d_alpha_1_t_2*h_3_z - d_mu_3_t*w_3_t;
-        const real d_c_yz = d_alpha_1_t*h_3_z - d_mu_3_t*w_3_t_2;
-        const real d_c_zz = -d_alpha_1_t*h_3_y - d_alpha_1_t_2*h_3_x - inv_v_1_z*(J_2_xx*inv_v_1_z
-            + s_3*(h_3_y + J_3_xx*d_alpha_1_t - J_3_xy*d_alpha_1_t_2) - c_3*(J_3_xy*d_alpha_1_t -
-            h_3_x - J_3_yy*d_alpha_1_t_2));
-        /* (rprs-N43) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + d_mu_3_zy*w_3_t_2 + h_3_x*w_3_t_2;
+        const real d_c_xx = h_3_y*w_3_t - _r1_x*(c_3*d_Gamma_2_t + rprs_link2_mass*s_3) -
+            d_Gamma_3_x*w_3_t;
+        const real d_c_xy = h_3_y*w_3_t_2 - _r1_x*_r1_y - d_Gamma_3_y*w_3_t;
+        const real d_c_xz = d_alpha_3_t_2*h_3_z - d_Gamma_3_t*w_3_t;
+        const real d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*w_3_t_2;
+        /* (rprs-N48) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx + _r1_y*(s_3*w_2_t - c_3) + d_Gamma_3_y*w_3_t_2 + h_3_x*w_3_t_2;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx - d_c_zz;
+        const real Q_t_3 = d_c_xx + d_Gamma_1_x*inv_v_1_z + d_alpha_3_t*h_3_y +
+            d_alpha_3_t_2*h_3_x;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_rprs_axes3_x*d_c_xy + axis_z_rprs_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_rprs_axes3_in_base_x;
@@ -2086,33 +2097,33 @@ INLINE void Z_legs_rprs(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (rprs-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_v_1_z*rel_o_z;
         const real qdd_3_o = inv_r_1_t_2*(-c_3*rel_o_x - rel_o_y*s_3);
-        /* (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
         const real acc_2_o_z = rel_o_x*s_3 - g_r0_z - c_3*rel_o_y - qdd_3_o*r_1_t;
-        /* (rprs-N9) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (rprs-N6) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_o_t = acc_2_o_z*rprs_link2_mass;
-        /* (rprs-N27) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rprs-N33) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = J_2_xx*qdd_1_o - g_r1_x*h_2_y - g_r1_y*h_2_z;
-        /* (rprs-N11) remainder without the acceleration in: acceleration of the reference point of link
-           3, less gravity */
+        /* (rprs-N8) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
         const real acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_o_z = u_1_tip_z - g_r1_x;
-        /* (rprs-A16) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rprs-A15) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_3;
         const real alpha_1_o_t_2 = c_3*qdd_1_o;
-        /* (rprs-A21) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rprs-A20) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_1_o_t + zeta_3_x;
         const real alpha_3_o_y = zeta_3_y - alpha_1_o_t_2;
-        /* (rprs-A23) acceleration tensor of link 3 */
+        /* (rprs-A22) acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = -alpha_3_o_y - zeta_3_y;
         const real B_3_o_zy = alpha_3_o_x + zeta_3_x;
-        /* (rprs-N19) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rprs-N26) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             Sigma_3_zz*alpha_1_o_t + acc_3_o_z*h_3_y - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z;
@@ -2121,13 +2132,13 @@ INLINE void Z_legs_rprs(const prepared *m, size_t leg, size_t legs, const Z_valu
             acc_3_o_z*h_3_x;
         const real mu_3_o_z = B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_o_t
             + acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - J_3_yz*alpha_1_o_t_2 - acc_3_o_x*h_3_y;
-        /* (rprs-N30) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rprs-N35) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_3_o_x*s_3 - c_3*mu_3_o_y;
-        /* (rprs-N39) remainder without the acceleration in: force at the connection point that balances
+        /* (rprs-N44) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_r_1_t_2*(mu_3_o_z + f_2_o_t*r_1_t);
-        /* (rprs-N42) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rprs-N47) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = alpha_1_o_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y -
             G_o_t*c_3 - f_2_o_t*s_3;
@@ -2135,7 +2146,7 @@ INLINE void Z_legs_rprs(const prepared *m, size_t leg, size_t legs, const Z_valu
             B_3_o_yx*h_3_x - G_o_t*s_3;
         const real c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y -
             N_1_o_z*inv_v_1_z;
-        /* (rprs-N44) velocity and gravity terms of the leg force */
+        /* (rprs-N49) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_rprs_axes3_x*c_o_x - axis_y_rprs_axes3_in_base_x*c_o_y -
             axis_z_rprs_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_rprs_axes3_y*c_o_x - axis_y_rprs_axes3_in_base_y*c_o_y -
@@ -2842,7 +2853,7 @@ INLINE void required_legs_rprs(const prepared *m, size_t leg, size_t legs, const
         const real bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t;
         const real bias_z = -bias_t_2*omega_1_t - 2*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
             rprs_platform_joint_offset_x*zeta_3_y;
-        /* (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
@@ -2883,41 +2894,41 @@ INLINE void required_legs_rprs(const prepared *m, size_t leg, size_t legs, const
         /* (rprs-A8) acceleration of joint 1 */
         const real qdd_1 = inv_v_1_z*rel_z;
         const real qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3);
-        /* (rprs-N10) acceleration of the reference point of link 3, less gravity */
+        /* (rprs-N7) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_z = S_ddot_tip_z - g_r1_x;
         /* (rprs-N1) acceleration of the reference point of link 2, less gravity */
         const real acc_2_z = rel_x*s_3 - g_r0_z - c_3*rel_y - qdd_3*r_1_t;
-        /* (rprs-N7) inertia force of link 2 less its weight */
+        /* (rprs-N5) inertia force of link 2 less its weight */
         const real f_2_t = acc_2_z*rprs_link2_mass;
-        /* (rprs-N25) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rprs-N32) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = J_2_xx*qdd_1 - g_r1_x*h_2_y - g_r1_y*h_2_z;
         /* (rprs-A14) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_3;
         const real alpha_1_t_2 = c_3*qdd_1;
-        /* (rprs-A19) angular acceleration of link 3 */
+        /* (rprs-A18) angular acceleration of link 3 */
         const real alpha_3_x = alpha_1_t + zeta_3_x;
         const real alpha_3_y = zeta_3_y - alpha_1_t_2;
-        /* (rprs-A22) acceleration tensor of link 3 */
+        /* (rprs-A21) acceleration tensor of link 3 */
         const real B_3_xy = qdd_3 - W_3_xy;
         const real B_3_yx = -W_3_xy - qdd_3;
         const real B_3_zx = -alpha_3_y - zeta_3_y;
         const real B_3_zy = alpha_3_x + zeta_3_x;
-        /* (rprs-N17) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rprs-N25) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             Sigma_3_zz*alpha_1_t + acc_3_z*h_3_y - B_3_zx*J_3_xy - acc_3_y*h_3_z;
         const real mu_3_y = B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
             J_3_xz*(W_3_t - W_3_t_3) - Sigma_3_zz*alpha_1_t_2 - acc_3_z*h_3_x;
         const real mu_3_z = B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_t +
             acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_yz*alpha_1_t_2 - acc_3_x*h_3_y;
-        /* (rprs-N28) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rprs-N34) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_3_x*s_3 - c_3*mu_3_y;
-        /* (rprs-N37) force at the connection point that balances the leg's inertia and weight along all
+        /* (rprs-N42) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_r_1_t_2*(mu_3_z + f_2_t*r_1_t);
-        /* (rprs-N40) leg force on the platform without actuation and without the mass at the connection
+        /* (rprs-N45) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = alpha_1_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - G_t*c_3 -
             f_2_t*s_3;
@@ -4079,7 +4090,7 @@ INLINE void legs_legs_rprs(const prepared *m, size_t leg, size_t legs, const leg
         const real bias_y = bias_t*omega_1_t - bias_t_3*omega_1_t;
         const real bias_z = -bias_t_2*omega_1_t - 2*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
             rprs_platform_joint_offset_x*zeta_3_y;
-        /* (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
@@ -4112,48 +4123,48 @@ INLINE void legs_legs_rprs(const prepared *m, size_t leg, size_t legs, const leg
         /* (rprs-A8) acceleration of joint 1 */
         const real qdd_1 = inv_v_1_z*rel_z;
         const real qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3);
-        /* (rprs-N10) acceleration of the reference point of link 3, less gravity */
+        /* (rprs-N7) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3;
         const real acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3;
         const real acc_3_z = S_ddot_tip_z - g_r1_x;
         /* (rprs-N1) acceleration of the reference point of link 2, less gravity */
         const real acc_2_z = rel_x*s_3 - g_r0_z - c_3*rel_y - qdd_3*r_1_t;
-        /* (rprs-N7) inertia force of link 2 less its weight */
+        /* (rprs-N5) inertia force of link 2 less its weight */
         const real f_2_t = acc_2_z*rprs_link2_mass;
-        /* (rprs-N25) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rprs-N32) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = J_2_xx*qdd_1 - g_r1_x*h_2_y - g_r1_y*h_2_z;
         /* (rprs-A14) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_3;
         const real alpha_1_t_2 = c_3*qdd_1;
-        /* (rprs-A19) angular acceleration of link 3 */
+        /* (rprs-A18) angular acceleration of link 3 */
         const real alpha_3_x = alpha_1_t + zeta_3_x;
         const real alpha_3_y = zeta_3_y - alpha_1_t_2;
-        /* (rprs-A22) acceleration tensor of link 3 */
+        /* (rprs-A21) acceleration tensor of link 3 */
         const real B_3_xy = qdd_3 - W_3_xy;
         const real B_3_yx = -W_3_xy - qdd_3;
         const real B_3_zx = -alpha_3_y - zeta_3_y;
         const real B_3_zy = alpha_3_x + zeta_3_x;
-        /* (rprs-N17) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rprs-N25) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             Sigma_3_zz*alpha_1_t + acc_3_z*h_3_y - B_3_zx*J_3_xy - acc_3_y*h_3_z;
         const real mu_3_y = B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz - B_3_zx*Sigma_3_xx -
             J_3_xz*(W_3_t - W_3_t_3) - Sigma_3_zz*alpha_1_t_2 - acc_3_z*h_3_x;
         const real mu_3_z = B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_t +
             acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - J_3_yz*alpha_1_t_2 - acc_3_x*h_3_y;
-        /* (rprs-N28) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rprs-N34) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_3_x*s_3 - c_3*mu_3_y;
-        /* (rprs-N37) force at the connection point that balances the leg's inertia and weight along all
+        /* (rprs-N42) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_r_1_t_2*(mu_3_z + f_2_t*r_1_t);
-        /* (rprs-N40) leg force on the platform without actuation and without the mass at the connection
+        /* (rprs-N45) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = alpha_1_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - G_t*c_3 -
             f_2_t*s_3;
         const real c_y = alpha_1_t*h_3_z + c_3*f_2_t + h_3_y*(W_3_t + W_3_t_3) - B_3_yx*h_3_x -
             G_t*s_3;
         const real c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z;
-        /* (rprs-N45) leg force on the platform without actuation, the last link's mass included */
+        /* (rprs-N50) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_3_x*rprs_link3_mass;
         const real c_true_y = c_y - acc_3_y*rprs_link3_mass;
         const real c_true_z = c_z - acc_3_z*rprs_link3_mass;

@@ -337,10 +337,6 @@ def _prepare(p):
     size = sqrt(size_t_7)
     # (rprs-K18) cosine of the angle of joint 3 from its reference direction
     inv_size_t_6 = 1.0/size_t_2
-    # (rprs-G2) first moment of link 2 about the origin of link 2
-    h_2_x = rprs_link2_centre_of_mass_x*rprs_link2_mass
-    h_2_y = rprs_link2_centre_of_mass_y*rprs_link2_mass
-    h_2_z = rprs_link2_centre_of_mass_z*rprs_link2_mass
     # (rprs-G3) inertia tensor of link 2 about the origin of link 2
     J_2_t = rprs_link2_centre_of_mass_x*rprs_link2_centre_of_mass_x
     J_2_t_2 = (
@@ -364,6 +360,10 @@ def _prepare(p):
         rprs_link3_centre_of_mass_y*rprs_link3_centre_of_mass_z*rprs_link3_mass
     )
     J_3_zz = rprs_link3_inertia_zz - rprs_link3_mass*(J_3_t_3 - J_3_t_4)
+    # (rprs-G2) first moment of link 2 about the origin of link 2
+    h_2_x = rprs_link2_centre_of_mass_x*rprs_link2_mass
+    h_2_y = rprs_link2_centre_of_mass_y*rprs_link2_mass
+    h_2_z = rprs_link2_centre_of_mass_z*rprs_link2_mass
     # (rprs-G5) first moment of link 3 about the connection point
     h_3_x = rho_tip_3_x*rprs_link3_mass
     h_3_y = rprs_link3_centre_of_mass_y*rprs_link3_mass
@@ -379,7 +379,7 @@ def _prepare(p):
     J_star_t_14 = rprs_link3_mass*(size_t_6 - size_t_4)
     J_star_t_15 = rprs_link3_mass*rprs_platform_point_y*rprs_platform_point_z
     J_star_t_16 = rprs_link3_mass*(size_t_6 - size_t_5)
-    # (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r0_x = (
     gravity_x*rprs_base_frame_xy + gravity_y*rprs_base_frame_yy + gravity_z*rprs_base_frame_zy
     )
@@ -389,9 +389,9 @@ def _prepare(p):
     g_r0_z = (
     gravity_x*rprs_base_frame_xx + gravity_y*rprs_base_frame_yx + gravity_z*rprs_base_frame_zx
     )
-    # (rprs-N15) half the trace of that inertia tensor
+    # (rprs-N23) half the trace of that inertia tensor
     trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rprs-N16) second moment of mass of the links that turn with link 3
+    # (rprs-N24) second moment of mass of the links that turn with link 3
     Sigma_3_xx = trace_J_3 - J_3_xx
     Sigma_3_yy = trace_J_3 - J_3_yy
     Sigma_3_zz = trace_J_3 - J_3_zz
@@ -661,7 +661,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 1098 mul, 828 add, 9 div, 6 sqrt, 0 trig
+# dynamics: 1104 mul, 825 add, 9 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -770,7 +770,7 @@ def _dynamics_rprs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-        branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+        branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
         inv_size_t_6, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
         rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
         rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
@@ -855,40 +855,43 @@ def _dynamics_rprs(c, k, x, s, f):
     axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
         axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
     )
+    # (rprs-N20) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t = h_2_x + 0.5*q_2*rprs_link2_mass
+    # (rprs-V5) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rprs-V6) reciprocal vector 2
     inv_r_1_t_2 = 1.0/r_1_t_2
     w_2_t = inv_r_1_t_2*r_1_t
     _r1_x = s_3 + c_3*w_2_t
     _r1_y = s_3*w_2_t - c_3
-    # (rprs-N8) coefficient of the acceleration in: inertia force of link 2 less its weight
-    d_f_2_t = rprs_link2_mass*(-_r1_x*c_3 - _r1_y*s_3)
-    d_f_2_t_2 = rprs_link2_mass*(_r1_x*s_3 - _r1_y*c_3)
     # (rprs-V7) reciprocal vector 3
     w_3_t = c_3*inv_r_1_t_2
     w_3_t_2 = inv_r_1_t_2*s_3
-    # (rprs-A15) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_v_1_z*s_3
-    d_alpha_1_t_2 = c_3*inv_v_1_z
-    # (rprs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xz*d_alpha_1_t - J_3_yz*d_alpha_1_t_2
-    d_mu_3_zy = h_3_x + J_3_zz*w_3_t_2
-    # (rprs-N32) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-    d_Gamma_2_r1_y = -c_3*d_f_2_t_2 - d_f_2_t*s_3
-    # (rprs-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = h_3_y*w_3_t - _r1_x*(d_f_2_t_2*s_3 - c_3*d_f_2_t) - w_3_t*(J_3_zz*w_3_t - h_3_y)
-    d_c_xy = h_3_y*w_3_t_2 - _r1_x*d_Gamma_2_r1_y - d_mu_3_zy*w_3_t
-    d_c_xz = d_alpha_1_t_2*h_3_z - d_mu_3_t*w_3_t
-    d_c_yz = d_alpha_1_t*h_3_z - d_mu_3_t*w_3_t_2
-    d_c_zz = (
-    -d_alpha_1_t*h_3_y - d_alpha_1_t_2*h_3_x - inv_v_1_z*(J_2_xx*inv_v_1_z + s_3*(h_3_y +
-        J_3_xx*d_alpha_1_t - J_3_xy*d_alpha_1_t_2) - c_3*(J_3_xy*d_alpha_1_t - h_3_x -
-        J_3_yy*d_alpha_1_t_2))
+    # (rprs-N40) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_x = (
+    c_3*h_3_x + h_3_y*s_3 + inv_v_1_z*(J_2_xx + s_3*(J_3_xx*s_3 - J_3_xy*c_3) - c_3*(J_3_xy*s_3 -
+        J_3_yy*c_3))
     )
-    # (rprs-N43) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + d_mu_3_zy*w_3_t_2 + h_3_x*w_3_t_2
+    # (rprs-N37) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_r_1_t_2*r_1_t*rprs_link2_mass
+    _r1_y_2 = d_Gamma_2_t*s_3 - c_3*rprs_link2_mass
+    # (rprs-N28) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = inv_v_1_z*(J_3_xz*s_3 - J_3_yz*c_3)
+    d_Gamma_3_t_2 = J_3_zz*inv_r_1_t_2
+    d_Gamma_3_x = c_3*d_Gamma_3_t_2 - h_3_y
+    d_Gamma_3_y = h_3_x + d_Gamma_3_t_2*s_3
+    # (rprs-A19) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = inv_v_1_z*s_3
+    d_alpha_3_t_2 = c_3*inv_v_1_z
+    # (rprs-N46) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xx = h_3_y*w_3_t - _r1_x*(c_3*d_Gamma_2_t + rprs_link2_mass*s_3) - d_Gamma_3_x*w_3_t
+    d_c_xy = h_3_y*w_3_t_2 - _r1_x*_r1_y_2 - d_Gamma_3_y*w_3_t
+    d_c_xz = d_alpha_3_t_2*h_3_z - d_Gamma_3_t*w_3_t
+    d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*w_3_t_2
+    # (rprs-N48) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx + _r1_y*_r1_y_2 + d_Gamma_3_y*w_3_t_2 + h_3_x*w_3_t_2
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx - d_c_zz
+    Q_t_3 = d_c_xx + d_Gamma_1_x*inv_v_1_z + d_alpha_3_t*h_3_y + d_alpha_3_t_2*h_3_x
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_rprs_axes3_x*d_c_xy + axis_z_rprs_axes3_in_base_x*d_c_yz -
@@ -1007,30 +1010,30 @@ def _dynamics_rprs(c, k, x, s, f):
     # (rprs-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = inv_v_1_z*rel_o_z
     qdd_3_o = inv_r_1_t_2*(-c_3*rel_o_x - rel_o_y*s_3)
-    # (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     acc_2_o_z = rel_o_x*s_3 - g_r0_z - c_3*rel_o_y - qdd_3_o*r_1_t
-    # (rprs-N9) remainder without the acceleration in: inertia force of link 2 less its weight
+    # (rprs-N6) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_o_t = acc_2_o_z*rprs_link2_mass
-    # (rprs-N27) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rprs-N33) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = J_2_xx*qdd_1_o - g_r1_x*h_2_y - g_r1_y*h_2_z
-    # (rprs-N11) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rprs-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_o_z = u_1_tip_z - g_r1_x
-    # (rprs-A16) remainder without the acceleration in: angular acceleration of link 1
+    # (rprs-A15) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_3
     alpha_1_o_t_2 = c_3*qdd_1_o
-    # (rprs-A21) remainder without the acceleration in: angular acceleration of link 3
+    # (rprs-A20) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_1_o_t + zeta_3_x
     alpha_3_o_y = zeta_3_y - alpha_1_o_t_2
-    # (rprs-A23) acceleration tensor of link 3
+    # (rprs-A22) acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = -alpha_3_o_y - zeta_3_y
     B_3_o_zy = alpha_3_o_x + zeta_3_x
-    # (rprs-N19) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rprs-N26) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + Sigma_3_zz*alpha_1_o_t +
         acc_3_o_z*h_3_y - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
@@ -1043,17 +1046,17 @@ def _dynamics_rprs(c, k, x, s, f):
     B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_o_t + acc_3_o_y*h_3_x -
         B_3_o_xy*Sigma_3_yy - J_3_yz*alpha_1_o_t_2 - acc_3_o_x*h_3_y
     )
-    # (rprs-N30) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rprs-N35) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + mu_3_o_x*s_3 - c_3*mu_3_o_y
-    # (rprs-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rprs-N44) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_r_1_t_2*(mu_3_o_z + f_2_o_t*r_1_t)
-    # (rprs-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rprs-N47) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     alpha_1_o_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - G_o_t*c_3 - f_2_o_t*s_3
     )
     c_o_y = alpha_1_o_t*h_3_z + c_3*f_2_o_t + h_3_y*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_x - G_o_t*s_3
     c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-    # (rprs-N44) velocity and gravity terms of the leg force
+    # (rprs-N49) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rprs_axes3_x*c_o_x - axis_y_rprs_axes3_in_base_x*c_o_y -
         axis_z_rprs_axes3_in_base_x*c_o_z
@@ -1147,7 +1150,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 558 mul, 429 add, 9 div, 6 sqrt, 0 trig
+# M: 564 mul, 426 add, 9 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1218,8 +1221,8 @@ def _M_before(c, X, f):
 def _M_rprs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_3_x, h_3_y,
-        h_3_z, inv_size_t_6, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
+    J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_2_x, h_3_x,
+        h_3_y, h_3_z, inv_size_t_6, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
         rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
         rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
         rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass, rprs_platform_joint_offset_x,
@@ -1300,40 +1303,42 @@ def _M_rprs(c, k, x, s, f):
     axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
         axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
     )
+    # (rprs-N20) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t = h_2_x + 0.5*q_2*rprs_link2_mass
+    # (rprs-V5) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rprs-V6) reciprocal vector 2
     inv_r_1_t_2 = 1.0/r_1_t_2
     w_2_t = inv_r_1_t_2*r_1_t
     _r1_x = s_3 + c_3*w_2_t
-    _r1_y = s_3*w_2_t - c_3
-    # (rprs-N8) coefficient of the acceleration in: inertia force of link 2 less its weight
-    d_f_2_t = rprs_link2_mass*(-_r1_x*c_3 - _r1_y*s_3)
-    d_f_2_t_2 = rprs_link2_mass*(_r1_x*s_3 - _r1_y*c_3)
     # (rprs-V7) reciprocal vector 3
     w_3_t = c_3*inv_r_1_t_2
     w_3_t_2 = inv_r_1_t_2*s_3
-    # (rprs-A15) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_v_1_z*s_3
-    d_alpha_1_t_2 = c_3*inv_v_1_z
-    # (rprs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xz*d_alpha_1_t - J_3_yz*d_alpha_1_t_2
-    d_mu_3_zy = h_3_x + J_3_zz*w_3_t_2
-    # (rprs-N32) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
-    d_Gamma_2_r1_y = -c_3*d_f_2_t_2 - d_f_2_t*s_3
-    # (rprs-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = h_3_y*w_3_t - _r1_x*(d_f_2_t_2*s_3 - c_3*d_f_2_t) - w_3_t*(J_3_zz*w_3_t - h_3_y)
-    d_c_xy = h_3_y*w_3_t_2 - _r1_x*d_Gamma_2_r1_y - d_mu_3_zy*w_3_t
-    d_c_xz = d_alpha_1_t_2*h_3_z - d_mu_3_t*w_3_t
-    d_c_yz = d_alpha_1_t*h_3_z - d_mu_3_t*w_3_t_2
-    d_c_zz = (
-    -d_alpha_1_t*h_3_y - d_alpha_1_t_2*h_3_x - inv_v_1_z*(J_2_xx*inv_v_1_z + s_3*(h_3_y +
-        J_3_xx*d_alpha_1_t - J_3_xy*d_alpha_1_t_2) - c_3*(J_3_xy*d_alpha_1_t - h_3_x -
-        J_3_yy*d_alpha_1_t_2))
+    # (rprs-N40) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_x = (
+    c_3*h_3_x + h_3_y*s_3 + inv_v_1_z*(J_2_xx + s_3*(J_3_xx*s_3 - J_3_xy*c_3) - c_3*(J_3_xy*s_3 -
+        J_3_yy*c_3))
     )
-    # (rprs-N43) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _r1_y*d_Gamma_2_r1_y + d_mu_3_zy*w_3_t_2 + h_3_x*w_3_t_2
+    # (rprs-N37) coefficient of the acceleration in: force along axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_r_1_t_2*r_1_t*rprs_link2_mass
+    _r1_y = d_Gamma_2_t*s_3 - c_3*rprs_link2_mass
+    # (rprs-N28) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = inv_v_1_z*(J_3_xz*s_3 - J_3_yz*c_3)
+    d_Gamma_3_t_2 = J_3_zz*inv_r_1_t_2
+    d_Gamma_3_x = c_3*d_Gamma_3_t_2 - h_3_y
+    d_Gamma_3_y = h_3_x + d_Gamma_3_t_2*s_3
+    # (rprs-A19) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = inv_v_1_z*s_3
+    d_alpha_3_t_2 = c_3*inv_v_1_z
+    # (rprs-N46) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xx = h_3_y*w_3_t - _r1_x*(c_3*d_Gamma_2_t + rprs_link2_mass*s_3) - d_Gamma_3_x*w_3_t
+    d_c_xy = h_3_y*w_3_t_2 - _r1_x*_r1_y - d_Gamma_3_y*w_3_t
+    d_c_xz = d_alpha_3_t_2*h_3_z - d_Gamma_3_t*w_3_t
+    d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*w_3_t_2
+    # (rprs-N48) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx + _r1_y*(s_3*w_2_t - c_3) + d_Gamma_3_y*w_3_t_2 + h_3_x*w_3_t_2
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx - d_c_zz
+    Q_t_3 = d_c_xx + d_Gamma_1_x*inv_v_1_z + d_alpha_3_t*h_3_y + d_alpha_3_t_2*h_3_x
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_rprs_axes3_x*d_c_xy + axis_z_rprs_axes3_in_base_x*d_c_yz -
@@ -1680,30 +1685,30 @@ def _Z_rprs(c, k, x, s, f):
     # (rprs-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o = inv_v_1_z*rel_o_z
     qdd_3_o = inv_r_1_t_2*(-c_3*rel_o_x - rel_o_y*s_3)
-    # (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     acc_2_o_z = rel_o_x*s_3 - g_r0_z - c_3*rel_o_y - qdd_3_o*r_1_t
-    # (rprs-N9) remainder without the acceleration in: inertia force of link 2 less its weight
+    # (rprs-N6) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_o_t = acc_2_o_z*rprs_link2_mass
-    # (rprs-N27) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rprs-N33) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = J_2_xx*qdd_1_o - g_r1_x*h_2_y - g_r1_y*h_2_z
-    # (rprs-N11) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rprs-N8) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = u_1_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_o_y = u_1_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_o_z = u_1_tip_z - g_r1_x
-    # (rprs-A16) remainder without the acceleration in: angular acceleration of link 1
+    # (rprs-A15) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_3
     alpha_1_o_t_2 = c_3*qdd_1_o
-    # (rprs-A21) remainder without the acceleration in: angular acceleration of link 3
+    # (rprs-A20) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_1_o_t + zeta_3_x
     alpha_3_o_y = zeta_3_y - alpha_1_o_t_2
-    # (rprs-A23) acceleration tensor of link 3
+    # (rprs-A22) acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = -alpha_3_o_y - zeta_3_y
     B_3_o_zy = alpha_3_o_x + zeta_3_x
-    # (rprs-N19) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rprs-N26) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + Sigma_3_zz*alpha_1_o_t +
         acc_3_o_z*h_3_y - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
@@ -1716,17 +1721,17 @@ def _Z_rprs(c, k, x, s, f):
     B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_o_t + acc_3_o_y*h_3_x -
         B_3_o_xy*Sigma_3_yy - J_3_yz*alpha_1_o_t_2 - acc_3_o_x*h_3_y
     )
-    # (rprs-N30) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rprs-N35) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z + mu_3_o_x*s_3 - c_3*mu_3_o_y
-    # (rprs-N39) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rprs-N44) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_r_1_t_2*(mu_3_o_z + f_2_o_t*r_1_t)
-    # (rprs-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rprs-N47) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     alpha_1_o_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - G_o_t*c_3 - f_2_o_t*s_3
     )
     c_o_y = alpha_1_o_t*h_3_z + c_3*f_2_o_t + h_3_y*(W_3_t + W_3_t_3) - B_3_o_yx*h_3_x - G_o_t*s_3
     c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-    # (rprs-N44) velocity and gravity terms of the leg force
+    # (rprs-N49) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rprs_axes3_x*c_o_x - axis_y_rprs_axes3_in_base_x*c_o_y -
         axis_z_rprs_axes3_in_base_x*c_o_z
@@ -2186,7 +2191,7 @@ def _required_rprs(c, k, x, s, f):
     -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
         rprs_platform_joint_offset_x*zeta_3_y
     )
-    # (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     # (rprs-V5) reciprocal vector 1
@@ -2231,28 +2236,28 @@ def _required_rprs(c, k, x, s, f):
     # (rprs-A8) acceleration of joint 1
     qdd_1 = inv_v_1_z*rel_z
     qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3)
-    # (rprs-N10) acceleration of the reference point of link 3, less gravity
+    # (rprs-N7) acceleration of the reference point of link 3, less gravity
     acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_z = S_ddot_tip_z - g_r1_x
     # (rprs-N1) acceleration of the reference point of link 2, less gravity
     acc_2_z = rel_x*s_3 - g_r0_z - c_3*rel_y - qdd_3*r_1_t
-    # (rprs-N7) inertia force of link 2 less its weight
+    # (rprs-N5) inertia force of link 2 less its weight
     f_2_t = acc_2_z*rprs_link2_mass
-    # (rprs-N25) inertia moment of the links that turn with link 1, about their reference points
+    # (rprs-N32) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = J_2_xx*qdd_1 - g_r1_x*h_2_y - g_r1_y*h_2_z
     # (rprs-A14) angular acceleration of link 1
     alpha_1_t = qdd_1*s_3
     alpha_1_t_2 = c_3*qdd_1
-    # (rprs-A19) angular acceleration of link 3
+    # (rprs-A18) angular acceleration of link 3
     alpha_3_x = alpha_1_t + zeta_3_x
     alpha_3_y = zeta_3_y - alpha_1_t_2
-    # (rprs-A22) acceleration tensor of link 3
+    # (rprs-A21) acceleration tensor of link 3
     B_3_xy = qdd_3 - W_3_xy
     B_3_yx = -W_3_xy - qdd_3
     B_3_zx = -alpha_3_y - zeta_3_y
     B_3_zy = alpha_3_x + zeta_3_x
-    # (rprs-N17) inertia moment of the links that turn with link 3, about their reference points
+    # (rprs-N25) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + Sigma_3_zz*alpha_1_t +
         acc_3_z*h_3_y - B_3_zx*J_3_xy - acc_3_y*h_3_z
@@ -2265,11 +2270,11 @@ def _required_rprs(c, k, x, s, f):
     B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_t + acc_3_y*h_3_x -
         B_3_xy*Sigma_3_yy - J_3_yz*alpha_1_t_2 - acc_3_x*h_3_y
     )
-    # (rprs-N28) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rprs-N34) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + mu_3_x*s_3 - c_3*mu_3_y
-    # (rprs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rprs-N42) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_r_1_t_2*(mu_3_z + f_2_t*r_1_t)
-    # (rprs-N40) leg force on the platform without actuation and without the mass at the connection point
+    # (rprs-N45) leg force on the platform without actuation and without the mass at the connection point
     c_x = alpha_1_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - G_t*c_3 - f_2_t*s_3
     c_y = alpha_1_t*h_3_z + c_3*f_2_t + h_3_y*(W_3_t + W_3_t_3) - B_3_yx*h_3_x - G_t*s_3
     c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
@@ -2969,7 +2974,7 @@ def _legs_rprs(c, k, x, s, f):
     -bias_t_2*omega_1_t - 2.0*qd_1_t*(c_3*omega_1_t - omega_1_t_2*s_3) -
         rprs_platform_joint_offset_x*zeta_3_y
     )
-    # (rprs-N3) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (rprs-N2) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     # (rprs-V5) reciprocal vector 1
@@ -3006,28 +3011,28 @@ def _legs_rprs(c, k, x, s, f):
     # (rprs-A8) acceleration of joint 1
     qdd_1 = inv_v_1_z*rel_z
     qdd_3 = inv_r_1_t_2*(-c_3*rel_x - rel_y*s_3)
-    # (rprs-N10) acceleration of the reference point of link 3, less gravity
+    # (rprs-N7) acceleration of the reference point of link 3, less gravity
     acc_3_x = S_ddot_tip_x + c_3*g_r1_y - g_r0_z*s_3
     acc_3_y = S_ddot_tip_y + c_3*g_r0_z + g_r1_y*s_3
     acc_3_z = S_ddot_tip_z - g_r1_x
     # (rprs-N1) acceleration of the reference point of link 2, less gravity
     acc_2_z = rel_x*s_3 - g_r0_z - c_3*rel_y - qdd_3*r_1_t
-    # (rprs-N7) inertia force of link 2 less its weight
+    # (rprs-N5) inertia force of link 2 less its weight
     f_2_t = acc_2_z*rprs_link2_mass
-    # (rprs-N25) inertia moment of the links that turn with link 1, about their reference points
+    # (rprs-N32) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = J_2_xx*qdd_1 - g_r1_x*h_2_y - g_r1_y*h_2_z
     # (rprs-A14) angular acceleration of link 1
     alpha_1_t = qdd_1*s_3
     alpha_1_t_2 = c_3*qdd_1
-    # (rprs-A19) angular acceleration of link 3
+    # (rprs-A18) angular acceleration of link 3
     alpha_3_x = alpha_1_t + zeta_3_x
     alpha_3_y = zeta_3_y - alpha_1_t_2
-    # (rprs-A22) acceleration tensor of link 3
+    # (rprs-A21) acceleration tensor of link 3
     B_3_xy = qdd_3 - W_3_xy
     B_3_yx = -W_3_xy - qdd_3
     B_3_zx = -alpha_3_y - zeta_3_y
     B_3_zy = alpha_3_x + zeta_3_x
-    # (rprs-N17) inertia moment of the links that turn with link 3, about their reference points
+    # (rprs-N25) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + Sigma_3_zz*alpha_1_t +
         acc_3_z*h_3_y - B_3_zx*J_3_xy - acc_3_y*h_3_z
@@ -3040,15 +3045,15 @@ def _legs_rprs(c, k, x, s, f):
     B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + J_3_xz*alpha_1_t + acc_3_y*h_3_x -
         B_3_xy*Sigma_3_yy - J_3_yz*alpha_1_t_2 - acc_3_x*h_3_y
     )
-    # (rprs-N28) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rprs-N34) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z + mu_3_x*s_3 - c_3*mu_3_y
-    # (rprs-N37) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rprs-N42) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_r_1_t_2*(mu_3_z + f_2_t*r_1_t)
-    # (rprs-N40) leg force on the platform without actuation and without the mass at the connection point
+    # (rprs-N45) leg force on the platform without actuation and without the mass at the connection point
     c_x = alpha_1_t_2*h_3_z + h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - G_t*c_3 - f_2_t*s_3
     c_y = alpha_1_t*h_3_z + c_3*f_2_t + h_3_y*(W_3_t + W_3_t_3) - B_3_yx*h_3_x - G_t*s_3
     c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-    # (rprs-N45) leg force on the platform without actuation, the last link's mass included
+    # (rprs-N50) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_3_x*rprs_link3_mass
     c_true_y = c_y - acc_3_y*rprs_link3_mass
     c_true_z = c_z - acc_3_z*rprs_link3_mass
@@ -3208,14 +3213,14 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             "rprs",
 (),
 ('J_2_xx', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Sigma_3_xx', 'Sigma_3_yy',
-            'Sigma_3_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx', 'rprs_base_frame_xy',
-            'rprs_base_frame_xz', 'rprs_base_frame_yx', 'rprs_base_frame_yy',
-            'rprs_base_frame_yz', 'rprs_base_frame_zx', 'rprs_base_frame_zy',
-            'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y', 'rprs_base_point_z',
-            'rprs_joint3_offset_x', 'rprs_link2_mass', 'rprs_platform_joint_offset_x',
-            'rprs_platform_point_x', 'rprs_platform_point_y', 'rprs_platform_point_z', 'size',
-            'size_t_2', 'size_t_7'),
+            'Sigma_3_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y',
+            'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx',
+            'rprs_base_frame_xy', 'rprs_base_frame_xz', 'rprs_base_frame_yx',
+            'rprs_base_frame_yy', 'rprs_base_frame_yz', 'rprs_base_frame_zx',
+            'rprs_base_frame_zy', 'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y',
+            'rprs_base_point_z', 'rprs_joint3_offset_x', 'rprs_link2_mass',
+            'rprs_platform_joint_offset_x', 'rprs_platform_point_x', 'rprs_platform_point_y',
+            'rprs_platform_point_z', 'size', 'size_t_2', 'size_t_7'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -3264,13 +3269,13 @@ arrays=(('M', (6, 6)),),
             "rprs",
 (),
 ('J_2_xx', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'branch_1', 'branch_2',
-            'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx', 'rprs_base_frame_xy',
-            'rprs_base_frame_xz', 'rprs_base_frame_yx', 'rprs_base_frame_yy',
-            'rprs_base_frame_yz', 'rprs_base_frame_zx', 'rprs_base_frame_zy',
-            'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y', 'rprs_base_point_z',
-            'rprs_joint3_offset_x', 'rprs_link2_mass', 'rprs_platform_joint_offset_x',
-            'rprs_platform_point_x', 'rprs_platform_point_y', 'rprs_platform_point_z', 'size',
-            'size_t_2', 'size_t_7'),
+            'h_2_x', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx',
+            'rprs_base_frame_xy', 'rprs_base_frame_xz', 'rprs_base_frame_yx',
+            'rprs_base_frame_yy', 'rprs_base_frame_yz', 'rprs_base_frame_zx',
+            'rprs_base_frame_zy', 'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y',
+            'rprs_base_point_z', 'rprs_joint3_offset_x', 'rprs_link2_mass',
+            'rprs_platform_joint_offset_x', 'rprs_platform_point_x', 'rprs_platform_point_y',
+            'rprs_platform_point_z', 'size', 'size_t_2', 'size_t_7'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

@@ -387,6 +387,12 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real prps_link3_inertia_zz = params->prps_link3_inertia[leg][2][2];
         static const signed char signs_branch_2[] = {1, 1, 1};
         const real branch_2 = signs_branch_2[leg];
+        /* (prps-N21) force that accelerates joint 1, per unit */
+        const real P_c1_t = prps_link1_mass + prps_link2_mass;
+        /* (prps-G3) first moment of link 2 about the origin of link 2 */
+        const real h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass;
+        const real h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass;
+        const real h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass;
         /* (prps-G1) size of the leg, the measure of what is near singular */
         const real size_t_ = prps_base_point_x*prps_base_point_x +
             prps_base_point_y*prps_base_point_y + prps_base_point_z*prps_base_point_z;
@@ -396,13 +402,6 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real size_t_5 = size_t_2 + size_t_3 + size_t_4;
         const real size_t_6 = size_t_ + size_t_5;
         const real size_ = root(size_t_6);
-        /* (prps-G3) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass;
-        const real h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass;
-        const real h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass;
-        /* (prps-N31) coefficient of the acceleration in: inertia force of the links from 1 outwards, the
-           last link left out */
-        const real d_T_1_zz = prps_link1_mass + prps_link2_mass;
         /* (prps-G4) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z;
         const real J_2_t_2 = J_2_t + prps_link2_centre_of_mass_x*prps_link2_centre_of_mass_x +
@@ -411,15 +410,15 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real J_3_t = prps_link3_centre_of_mass_z*prps_link3_centre_of_mass_z;
         const real J_3_t_2 = J_3_t + prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
             prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y;
-        /* (prps-N20) inertia of the links that turn with link 2, each about its reference point */
-        const real J_group_2_zz = prps_link2_inertia_zz + prps_link3_inertia_zz -
+        /* (prps-N16) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_zz = prps_link2_inertia_zz + prps_link3_inertia_zz -
             prps_link2_mass*(J_2_t - J_2_t_2) - prps_link3_mass*(J_3_t - J_3_t_2);
         /* (prps-G5) first moment of link 3 about the connection point */
         const real h_3_x = prps_link3_centre_of_mass_x*prps_link3_mass;
         const real h_3_y = prps_link3_centre_of_mass_y*prps_link3_mass;
         const real h_3_z = prps_link3_centre_of_mass_z*prps_link3_mass;
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_T_1_zz;
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = R(0.5)*P_c1_t;
         const real Q_t_2 = Q_t*prps_base_frame_xz;
         const real Q_t_3 = Q_t*prps_base_frame_yz;
         const real Q_t_4 = Q_t*prps_base_frame_zz;
@@ -443,7 +442,7 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real J_star_t_14 = prps_link3_mass*(size_t_3 - size_t_5);
         const real J_star_t_15 = prps_link3_mass*prps_platform_point_y*prps_platform_point_z;
         const real J_star_t_16 = prps_link3_mass*(size_t_4 - size_t_5);
-        /* (prps-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx +
             gravity_z*prps_base_frame_zx;
@@ -466,7 +465,7 @@ int hybrid_3prps_prepare(const hybrid_3prps_params *params, hybrid_3prps_model *
         const real potential_t_2 = b_r0_y*prps_link1_mass;
         const real potential_t_3 = b_r0_x*prps_link2_mass;
         const real potential_t_4 = b_r0_y*prps_link2_mass;
-        model->J_group_2_zz[leg] = J_group_2_zz;
+        model->Jc_2_zz[leg] = Jc_2_zz;
         model->Q_t_10[leg] = Q_t_10;
         model->Q_t_11[leg] = Q_t_11;
         model->Q_t_12[leg] = Q_t_12;
@@ -758,7 +757,7 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t leg, size_t legs, const
         const real omega_x = s->omega_x[j];
         const real omega_y = s->omega_y[j];
         const real omega_z = s->omega_z[j];
-        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real Q_t_10 = m->Q_t_10[i];
         const real Q_t_11 = m->Q_t_11[i];
         const real Q_t_12 = m->Q_t_12[i];
@@ -813,19 +812,21 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t leg, size_t legs, const
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N37) coefficient of the acceleration in: force at the connection point that balances the
+        /* (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_y = h_3_x + Jc_2_zz*inv_root_2;
+        /* (prps-N38) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
         const real d_G_t = h_3_y*inv_root_2;
-        /* (prps-N40) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (prps-N41) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -h_3_x*inv_root_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2);
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        const real d_c_yy = -d_Gamma_2_y*inv_root_2 - h_3_x*inv_root_2;
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2;
         const real axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2;
         const real axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2;
@@ -893,33 +894,33 @@ INLINE void dynamics_legs_prps(const prepared *m, size_t leg, size_t legs, const
         const real rel_o_y = u_1_tip_y - 2*S_dot_tip_x*qd_2;
         /* (prps-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_o = inv_root_2*rel_o_y;
-        /* (prps-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_z = prps_base_frame_xz*u_1_x + prps_base_frame_yz*u_1_y +
             prps_base_frame_zz*u_1_z - g_r0_z;
-        /* (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_2*g_r0_x + g_r0_y*s_2;
         const real g_r1_y = c_2*g_r0_y - g_r0_x*s_2;
-        /* (prps-N32) remainder without the acceleration in: inertia force of the links from 1 outwards,
+        /* (prps-N33) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real T_1_o_z = acc_1_o_z*prps_link1_mass + acc_1_o_z*prps_link2_mass;
-        /* (prps-N16) remainder without the acceleration in: acceleration of the reference point of link
+        /* (prps-N12) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_o_x = axis_x_prps_axes2_in_base_x*u_1_x +
             axis_x_prps_axes2_in_base_y*u_1_y + axis_x_prps_axes2_in_base_z*u_1_z - g_r1_x;
         const real acc_3_o_y = u_1_tip_y - g_r1_y;
-        /* (prps-N26) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prps-N28) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = J_group_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y -
-            acc_3_o_x*h_3_y - g_r1_y*h_2_x;
-        /* (prps-N19) remainder without the acceleration in: inertia force of link 3 from its turning
+        const real mu_2_o_z = Jc_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y -
+            g_r1_y*h_2_x;
+        /* (prps-N15) remainder without the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real phi_3_o_x = -W_2_t*h_3_x - h_3_y*qdd_2_o;
-        /* (prps-N41) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prps-N42) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_y = W_2_t*h_3_y - h_3_x*qdd_2_o - inv_root_2*mu_2_o_z;
-        /* (prps-N43) velocity and gravity terms of the leg force */
+        /* (prps-N44) velocity and gravity terms of the leg force */
         const real U_in_base_x = T_1_o_z*prps_base_frame_xz +
             axis_x_prps_axes2_in_base_x*phi_3_o_x - axis_y_prps_axes2_in_base_x*c_o_y;
         const real U_in_base_y = T_1_o_z*prps_base_frame_yz +
@@ -1293,7 +1294,7 @@ INLINE void M_legs_prps(const prepared *m, size_t leg, size_t legs, const M_valu
         const real R_zx = s->R_zx[j];
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
-        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real Q_t_10 = m->Q_t_10[i];
         const real Q_t_11 = m->Q_t_11[i];
         const real Q_t_12 = m->Q_t_12[i];
@@ -1338,19 +1339,21 @@ INLINE void M_legs_prps(const prepared *m, size_t leg, size_t legs, const M_valu
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N37) coefficient of the acceleration in: force at the connection point that balances the
+        /* (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_y = h_3_x + Jc_2_zz*inv_root_2;
+        /* (prps-N38) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
         const real d_G_t = h_3_y*inv_root_2;
-        /* (prps-N40) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (prps-N41) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_yy = -h_3_x*inv_root_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2);
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        const real d_c_yy = -d_Gamma_2_y*inv_root_2 - h_3_x*inv_root_2;
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2;
         const real axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2;
         const real axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2;
@@ -1716,7 +1719,7 @@ INLINE void Z_legs_prps(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real omega_x = s->omega_x[j];
         const real omega_y = s->omega_y[j];
         const real omega_z = s->omega_z[j];
-        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real branch_2 = m->branch_2[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
@@ -1762,13 +1765,12 @@ INLINE void Z_legs_prps(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2;
         const real axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2;
         const real axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2;
@@ -1800,33 +1802,33 @@ INLINE void Z_legs_prps(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real rel_o_y = u_1_tip_y - 2*S_dot_tip_x*qd_2;
         /* (prps-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_o = inv_root_2*rel_o_y;
-        /* (prps-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_z = prps_base_frame_xz*u_1_x + prps_base_frame_yz*u_1_y +
             prps_base_frame_zz*u_1_z - g_r0_z;
-        /* (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_2*g_r0_x + g_r0_y*s_2;
         const real g_r1_y = c_2*g_r0_y - g_r0_x*s_2;
-        /* (prps-N32) remainder without the acceleration in: inertia force of the links from 1 outwards,
+        /* (prps-N33) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real T_1_o_z = acc_1_o_z*prps_link1_mass + acc_1_o_z*prps_link2_mass;
-        /* (prps-N16) remainder without the acceleration in: acceleration of the reference point of link
+        /* (prps-N12) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_o_x = axis_x_prps_axes2_in_base_x*u_1_x +
             axis_x_prps_axes2_in_base_y*u_1_y + axis_x_prps_axes2_in_base_z*u_1_z - g_r1_x;
         const real acc_3_o_y = u_1_tip_y - g_r1_y;
-        /* (prps-N26) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prps-N28) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
-        const real mu_2_o_z = J_group_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y -
-            acc_3_o_x*h_3_y - g_r1_y*h_2_x;
-        /* (prps-N19) remainder without the acceleration in: inertia force of link 3 from its turning
+        const real mu_2_o_z = Jc_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y -
+            g_r1_y*h_2_x;
+        /* (prps-N15) remainder without the acceleration in: inertia force of link 3 from its turning
            about its reference point */
         const real phi_3_o_x = -W_2_t*h_3_x - h_3_y*qdd_2_o;
-        /* (prps-N41) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prps-N42) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_y = W_2_t*h_3_y - h_3_x*qdd_2_o - inv_root_2*mu_2_o_z;
-        /* (prps-N43) velocity and gravity terms of the leg force */
+        /* (prps-N44) velocity and gravity terms of the leg force */
         const real U_in_base_x = T_1_o_z*prps_base_frame_xz +
             axis_x_prps_axes2_in_base_x*phi_3_o_x - axis_y_prps_axes2_in_base_x*c_o_y;
         const real U_in_base_y = T_1_o_z*prps_base_frame_yz +
@@ -2023,7 +2025,6 @@ INLINE void H_legs_prps(const prepared *m, size_t leg, size_t legs, const H_valu
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real size_ = m->size_[i];
         const real size_t_6 = m->size_t_6[i];
         /* (prps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
@@ -2043,13 +2044,12 @@ INLINE void H_legs_prps(const prepared *m, size_t leg, size_t legs, const H_valu
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2;
         const real axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2;
         const real axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2;
@@ -2076,8 +2076,7 @@ INLINE void H_legs_prps(const prepared *m, size_t leg, size_t legs, const H_valu
         o->entry[9][k] = H_a_3_x;
         o->entry[10][k] = H_a_3_y;
         o->entry[11][k] = H_a_3_z;
-        o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
     }
 }
 
@@ -2331,7 +2330,7 @@ INLINE void required_legs_prps(const prepared *m, size_t leg, size_t legs, const
         const real alpha_x = s->alpha_x[j];
         const real alpha_y = s->alpha_y[j];
         const real alpha_z = s->alpha_z[j];
-        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real branch_2 = m->branch_2[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
@@ -2377,13 +2376,12 @@ INLINE void required_legs_prps(const prepared *m, size_t leg, size_t legs, const
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2;
         const real axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2;
         const real axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2;
@@ -2404,7 +2402,7 @@ INLINE void required_legs_prps(const prepared *m, size_t leg, size_t legs, const
             S_dot_y*axis_y_prps_axes2_in_base_y + S_dot_z*axis_y_prps_axes2_in_base_z);
         /* (prps-V11) centripetal tensor of link 2 */
         const real W_2_t = qd_2*qd_2;
-        /* (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_2*g_r0_x + g_r0_y*s_2;
         const real g_r1_y = c_2*g_r0_y - g_r0_x*s_2;
@@ -2433,20 +2431,20 @@ INLINE void required_legs_prps(const prepared *m, size_t leg, size_t legs, const
         const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_2;
         /* (prps-A7) acceleration of joint 1 */
         const real qdd_2 = inv_root_2*rel_y;
-        /* (prps-N15) acceleration of the reference point of link 3, less gravity */
+        /* (prps-N11) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_x*axis_x_prps_axes2_in_base_x +
             S_ddot_y*axis_x_prps_axes2_in_base_y + S_ddot_z*axis_x_prps_axes2_in_base_z - g_r1_x;
         const real acc_3_y = S_ddot_tip_y - g_r1_y;
         const real acc_3_z = S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz +
             S_ddot_z*prps_base_frame_zz - g_r0_z;
-        /* (prps-N30) inertia force of the links from 1 outwards, the last link left out */
+        /* (prps-N32) inertia force of the links from 1 outwards, the last link left out */
         const real T_1_z = acc_3_z*prps_link1_mass + acc_3_z*prps_link2_mass;
-        /* (prps-N24) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = J_group_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y -
+        /* (prps-N27) inertia moment of the links that turn with link 2, about their reference points */
+        const real mu_2_z = Jc_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y -
             g_r1_y*h_2_x;
-        /* (prps-N17) inertia force of link 3 from its turning about its reference point */
+        /* (prps-N13) inertia force of link 3 from its turning about its reference point */
         const real phi_3_x = -W_2_t*h_3_x - h_3_y*qdd_2;
-        /* (prps-N39) leg force on the platform without actuation and without the mass at the connection
+        /* (prps-N40) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_y = W_2_t*h_3_y - h_3_x*qdd_2 - inv_root_2*mu_2_z;
         const real c_in_base_x = axis_y_prps_axes2_in_base_x*c_y - T_1_z*prps_base_frame_xz -
@@ -2659,7 +2657,6 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t leg, size_t l
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real size_ = m->size_[i];
         const real size_t_6 = m->size_t_6[i];
         /* (prps-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
@@ -2680,15 +2677,14 @@ INLINE void inverse_kinematics_legs_prps(const prepared *m, size_t leg, size_t l
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
+        /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
         const real inv_root_2 = 1/root_2;
         /* (prps-K11) displacement of joint 2 */
         const real q_2 = angle(S_r0_y*inv_root_2, S_r0_x*inv_root_2);
         o->entry[0][k] = q_1_t;
         o->entry[1][k] = q_2;
         o->entry[2][k] = root_2;
-        o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
     }
 }
 
@@ -2877,9 +2873,8 @@ INLINE void joint_rates_legs_prps(const prepared *m, size_t leg, size_t legs, co
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
@@ -3119,13 +3114,12 @@ INLINE void joint_accelerations_legs_prps(const prepared *m, size_t leg, size_t 
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2;
         const real axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2;
         const real axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2;
@@ -3350,7 +3344,7 @@ INLINE void legs_legs_prps(const prepared *m, size_t leg, size_t legs, const leg
         const real alpha_x = s->alpha_x[j];
         const real alpha_y = s->alpha_y[j];
         const real alpha_z = s->alpha_z[j];
-        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real branch_2 = m->branch_2[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
@@ -3397,13 +3391,12 @@ INLINE void legs_legs_prps(const prepared *m, size_t leg, size_t legs, const leg
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
-        /* (prps-N42) inertia of the leg at the connection point, without the mass gathered there */
+        /* (prps-N43) inertia of the leg at the connection point, without the mass gathered there */
         const real axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2;
         const real axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2;
         const real axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2;
@@ -3424,7 +3417,7 @@ INLINE void legs_legs_prps(const prepared *m, size_t leg, size_t legs, const leg
             S_dot_y*axis_y_prps_axes2_in_base_y + S_dot_z*axis_y_prps_axes2_in_base_z);
         /* (prps-V11) centripetal tensor of link 2 */
         const real W_2_t = qd_2*qd_2;
-        /* (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_2*g_r0_x + g_r0_y*s_2;
         const real g_r1_y = c_2*g_r0_y - g_r0_x*s_2;
@@ -3442,21 +3435,21 @@ INLINE void legs_legs_prps(const prepared *m, size_t leg, size_t legs, const leg
         const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_2;
         /* (prps-A7) acceleration of joint 1 */
         const real qdd_2 = inv_root_2*rel_y;
-        /* (prps-N15) acceleration of the reference point of link 3, less gravity */
+        /* (prps-N11) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_x*axis_x_prps_axes2_in_base_x +
             S_ddot_y*axis_x_prps_axes2_in_base_y + S_ddot_z*axis_x_prps_axes2_in_base_z - g_r1_x;
         const real acc_3_y = S_ddot_tip_y - g_r1_y;
         const real acc_3_z = S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz +
             S_ddot_z*prps_base_frame_zz - g_r0_z;
-        /* (prps-N30) inertia force of the links from 1 outwards, the last link left out */
+        /* (prps-N32) inertia force of the links from 1 outwards, the last link left out */
         const real T_1_z = acc_3_z*prps_link1_mass + acc_3_z*prps_link2_mass;
-        /* (prps-N24) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_z = J_group_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y -
+        /* (prps-N27) inertia moment of the links that turn with link 2, about their reference points */
+        const real mu_2_z = Jc_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y -
             g_r1_y*h_2_x;
-        /* (prps-N39) leg force on the platform without actuation and without the mass at the connection
+        /* (prps-N40) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_y = W_2_t*h_3_y - h_3_x*qdd_2 - inv_root_2*mu_2_z;
-        /* (prps-N44) leg force on the platform without actuation, the last link's mass included */
+        /* (prps-N45) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = W_2_t*h_3_x + h_3_y*qdd_2 - acc_3_x*prps_link3_mass;
         const real c_true_y = c_y - acc_3_y*prps_link3_mass;
         const real c_true_z = -T_1_z - acc_3_z*prps_link3_mass;
@@ -3645,7 +3638,6 @@ INLINE void potential_legs_prps(const prepared *m, size_t leg, size_t legs, cons
         const real prps_platform_point_x = m->prps_platform_point_x[i];
         const real prps_platform_point_y = m->prps_platform_point_y[i];
         const real prps_platform_point_z = m->prps_platform_point_z[i];
-        const real size_ = m->size_[i];
         const real size_t_6 = m->size_t_6[i];
         /* (prps-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*prps_platform_point_x + R_xy*prps_platform_point_y +
@@ -3666,9 +3658,8 @@ INLINE void potential_legs_prps(const prepared *m, size_t leg, size_t legs, cons
         const real rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y;
         /* (prps-K8) amplitude, with the sign of the branch */
         const real root_2 = branch_2*root(rho2_2);
-        /* (prps-V5) reciprocal vector 2 */
-        const real inv_root_2 = 1/root_2;
         /* (prps-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
         const real c_2 = S_r0_x*inv_root_2;
         /* (prps-K10) sine of the angle of joint 2 from its reference direction */
         const real s_2 = S_r0_y*inv_root_2;
@@ -3679,8 +3670,7 @@ INLINE void potential_legs_prps(const prepared *m, size_t leg, size_t legs, cons
             c_2*h_2_y + c_2*h_3_y + h_2_x*s_2 + h_3_x*s_2) + g_r0_z*(h_1_z + h_2_z + h_3_z +
             potential_t_6*prps_link1_mass + potential_t_6*prps_link2_mass);
         o->sum[0][k] = potential_t_7;  /* total_prps */
-        o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
     }
 }
 

@@ -93,7 +93,7 @@ typedef struct {
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
             h_star_z, m_star;
     /* legs of type prps */
-    hybrid_3prps_real J_group_2_zz[3], Q_t_10[3], Q_t_11[3], Q_t_12[3], Q_t_13[3], Q_t_5[3], Q_t_6[3],
+    hybrid_3prps_real Jc_2_zz[3], Q_t_10[3], Q_t_11[3], Q_t_12[3], Q_t_13[3], Q_t_5[3], Q_t_6[3],
             Q_t_7[3], Q_t_8[3], Q_t_9[3], b_r0_z[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3],
             h_1_x[3], h_1_y[3], h_1_z[3], h_2_x[3], h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3],
             potential_t[3], potential_t_2[3], potential_t_3[3], potential_t_4[3],

@@ -325,6 +325,12 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
+    # (prps-N21) force that accelerates joint 1, per unit
+    P_c1_t = prps_link1_mass + prps_link2_mass
+    # (prps-G3) first moment of link 2 about the origin of link 2
+    h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass
+    h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass
+    h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass
     # (prps-G1) size of the leg, the measure of what is near singular
     size_t = (
     prps_base_point_x*prps_base_point_x + prps_base_point_y*prps_base_point_y +
@@ -336,12 +342,6 @@ def _prepare(p):
     size_t_5 = size_t_2 + size_t_3 + size_t_4
     size_t_6 = size_t + size_t_5
     size = sqrt(size_t_6)
-    # (prps-G3) first moment of link 2 about the origin of link 2
-    h_2_x = prps_link2_centre_of_mass_x*prps_link2_mass
-    h_2_y = prps_link2_centre_of_mass_y*prps_link2_mass
-    h_2_z = prps_link2_centre_of_mass_z*prps_link2_mass
-    # (prps-N31) coefficient of the acceleration in: inertia force of the links from 1 outwards, the last link left out
-    d_T_1_zz = prps_link1_mass + prps_link2_mass
     # (prps-G4) inertia tensor of link 2 about the origin of link 2
     J_2_t = prps_link2_centre_of_mass_z*prps_link2_centre_of_mass_z
     J_2_t_2 = (
@@ -354,8 +354,8 @@ def _prepare(p):
     J_3_t + prps_link3_centre_of_mass_x*prps_link3_centre_of_mass_x +
         prps_link3_centre_of_mass_y*prps_link3_centre_of_mass_y
     )
-    # (prps-N20) inertia of the links that turn with link 2, each about its reference point
-    J_group_2_zz = (
+    # (prps-N16) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_zz = (
     prps_link2_inertia_zz + prps_link3_inertia_zz - prps_link2_mass*(J_2_t - J_2_t_2) -
         prps_link3_mass*(J_3_t - J_3_t_2)
     )
@@ -363,8 +363,8 @@ def _prepare(p):
     h_3_x = prps_link3_centre_of_mass_x*prps_link3_mass
     h_3_y = prps_link3_centre_of_mass_y*prps_link3_mass
     h_3_z = prps_link3_centre_of_mass_z*prps_link3_mass
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*d_T_1_zz
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = 0.5*P_c1_t
     Q_t_2 = Q_t*prps_base_frame_xz
     Q_t_3 = Q_t*prps_base_frame_yz
     Q_t_4 = Q_t*prps_base_frame_zz
@@ -388,7 +388,7 @@ def _prepare(p):
     J_star_t_14 = prps_link3_mass*(size_t_3 - size_t_5)
     J_star_t_15 = prps_link3_mass*prps_platform_point_y*prps_platform_point_z
     J_star_t_16 = prps_link3_mass*(size_t_4 - size_t_5)
-    # (prps-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = (
     gravity_x*prps_base_frame_xx + gravity_y*prps_base_frame_yx + gravity_z*prps_base_frame_zx
     )
@@ -472,7 +472,7 @@ def _prepare(p):
     }
     legs = {
         "prps": {
-            "J_group_2_zz": np.broadcast_to(J_group_2_zz, _prps),
+            "Jc_2_zz": np.broadcast_to(Jc_2_zz, _prps),
             "Q_t_10": np.broadcast_to(Q_t_10, _prps),
             "Q_t_11": np.broadcast_to(Q_t_11, _prps),
             "Q_t_12": np.broadcast_to(Q_t_12, _prps),
@@ -781,11 +781,11 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_prps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
-        g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
-        prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
-        prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
-        prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
+    Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2, g_r0_x,
+        g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx, prps_base_frame_xy,
+        prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy, prps_base_frame_yz,
+        prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz, prps_base_point_x,
+        prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
         prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size, size_t_6,
     ) = k
     (
@@ -811,17 +811,18 @@ def _dynamics_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N37) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_y = h_3_x + Jc_2_zz*inv_root_2
+    # (prps-N38) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     d_G_t = h_3_y*inv_root_2
-    # (prps-N40) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -h_3_x*inv_root_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_yy = -d_Gamma_2_y*inv_root_2 - h_3_x*inv_root_2
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
     axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
     axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
@@ -893,30 +894,28 @@ def _dynamics_prps(c, k, x, s, f):
     rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_2
     # (prps-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_o = inv_root_2*rel_o_y
-    # (prps-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_z = (
     prps_base_frame_xz*u_1_x + prps_base_frame_yz*u_1_y + prps_base_frame_zz*u_1_z - g_r0_z
     )
-    # (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_2*g_r0_x + g_r0_y*s_2
     g_r1_y = c_2*g_r0_y - g_r0_x*s_2
-    # (prps-N32) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+    # (prps-N33) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
     T_1_o_z = acc_1_o_z*prps_link1_mass + acc_1_o_z*prps_link2_mass
-    # (prps-N16) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (prps-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = (
     axis_x_prps_axes2_in_base_x*u_1_x + axis_x_prps_axes2_in_base_y*u_1_y +
         axis_x_prps_axes2_in_base_z*u_1_z - g_r1_x
     )
     acc_3_o_y = u_1_tip_y - g_r1_y
-    # (prps-N26) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_z = (
-    J_group_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y - g_r1_y*h_2_x
-    )
-    # (prps-N19) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+    # (prps-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    mu_2_o_z = Jc_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y - g_r1_y*h_2_x
+    # (prps-N15) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
     phi_3_o_x = -W_2_t*h_3_x - h_3_y*qdd_2_o
-    # (prps-N41) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prps-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_y = W_2_t*h_3_y - h_3_x*qdd_2_o - inv_root_2*mu_2_o_z
-    # (prps-N43) velocity and gravity terms of the leg force
+    # (prps-N44) velocity and gravity terms of the leg force
     U_in_base_x = (
     T_1_o_z*prps_base_frame_xz + axis_x_prps_axes2_in_base_x*phi_3_o_x -
         axis_y_prps_axes2_in_base_x*c_o_y
@@ -1074,11 +1073,11 @@ def _M_before(c, X, f):
 def _M_prps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2,
-        h_3_x, h_3_y, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_yx,
-        prps_base_frame_yy, prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x,
-        prps_base_point_y, prps_base_point_z, prps_platform_point_x, prps_platform_point_y,
-        prps_platform_point_z, size, size_t_6,
+    Jc_2_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_2, h_3_x,
+        h_3_y, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_yx, prps_base_frame_yy,
+        prps_base_frame_zx, prps_base_frame_zy, prps_base_point_x, prps_base_point_y,
+        prps_base_point_z, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+        size, size_t_6,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (prps-K1) from the base point to the connection point
@@ -1100,17 +1099,18 @@ def _M_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N37) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prps-N30) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_y = h_3_x + Jc_2_zz*inv_root_2
+    # (prps-N38) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     d_G_t = h_3_y*inv_root_2
-    # (prps-N40) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_yy = -h_3_x*inv_root_2 - inv_root_2*(h_3_x + J_group_2_zz*inv_root_2)
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N41) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_yy = -d_Gamma_2_y*inv_root_2 - h_3_x*inv_root_2
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
     axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
     axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
@@ -1294,12 +1294,11 @@ def _Z_before(c, X, V, f):
 def _Z_prps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
-        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
-        prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
-        prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-        prps_link1_mass, prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-        prps_platform_point_z, size, size_t_6,
+    Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
+        prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
+        prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
+        prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
+        prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size, size_t_6,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -1324,13 +1323,12 @@ def _Z_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
     axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
     axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
@@ -1367,30 +1365,28 @@ def _Z_prps(c, k, x, s, f):
     rel_o_y = u_1_tip_y - 2.0*S_dot_tip_x*qd_2
     # (prps-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_o = inv_root_2*rel_o_y
-    # (prps-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prps-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_z = (
     prps_base_frame_xz*u_1_x + prps_base_frame_yz*u_1_y + prps_base_frame_zz*u_1_z - g_r0_z
     )
-    # (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_2*g_r0_x + g_r0_y*s_2
     g_r1_y = c_2*g_r0_y - g_r0_x*s_2
-    # (prps-N32) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+    # (prps-N33) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
     T_1_o_z = acc_1_o_z*prps_link1_mass + acc_1_o_z*prps_link2_mass
-    # (prps-N16) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (prps-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = (
     axis_x_prps_axes2_in_base_x*u_1_x + axis_x_prps_axes2_in_base_y*u_1_y +
         axis_x_prps_axes2_in_base_z*u_1_z - g_r1_x
     )
     acc_3_o_y = u_1_tip_y - g_r1_y
-    # (prps-N26) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    mu_2_o_z = (
-    J_group_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y - g_r1_y*h_2_x
-    )
-    # (prps-N19) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
+    # (prps-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    mu_2_o_z = Jc_2_zz*qdd_2_o + acc_3_o_y*h_3_x + g_r1_x*h_2_y - acc_3_o_x*h_3_y - g_r1_y*h_2_x
+    # (prps-N15) remainder without the acceleration in: inertia force of link 3 from its turning about its reference point
     phi_3_o_x = -W_2_t*h_3_x - h_3_y*qdd_2_o
-    # (prps-N41) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prps-N42) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_y = W_2_t*h_3_y - h_3_x*qdd_2_o - inv_root_2*mu_2_o_z
-    # (prps-N43) velocity and gravity terms of the leg force
+    # (prps-N44) velocity and gravity terms of the leg force
     U_in_base_x = (
     T_1_o_z*prps_base_frame_xz + axis_x_prps_axes2_in_base_x*phi_3_o_x -
         axis_y_prps_axes2_in_base_x*c_o_y
@@ -1472,7 +1468,7 @@ def _H_prps(c, k, x, s, f):
     branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
         prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
         prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-        prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size, size_t_6,
+        prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size_t_6,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (prps-K1) from the base point to the connection point
@@ -1494,13 +1490,12 @@ def _H_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_x_prps_axes2_in_base_x = c_2*prps_base_frame_xx + prps_base_frame_xy*s_2
     axis_x_prps_axes2_in_base_y = c_2*prps_base_frame_yx + prps_base_frame_yy*s_2
     axis_x_prps_axes2_in_base_z = c_2*prps_base_frame_zx + prps_base_frame_zy*s_2
@@ -1512,7 +1507,7 @@ def _H_prps(c, k, x, s, f):
     H_a_3_x = axis_x_prps_axes2_in_base_z*q_in_base_y - axis_x_prps_axes2_in_base_y*q_in_base_z
     H_a_3_y = axis_x_prps_axes2_in_base_x*q_in_base_z - axis_x_prps_axes2_in_base_z*q_in_base_x
     H_a_3_z = axis_x_prps_axes2_in_base_y*q_in_base_x - axis_x_prps_axes2_in_base_x*q_in_base_y
-    ok = (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(root_2) > _TOLERANCE * size)
+    ok = (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6)
     return (
     ok, (), (prps_base_frame_xz, prps_base_frame_yz, prps_base_frame_zz, H_a_1_x, H_a_1_y,
         H_a_1_z, axis_x_prps_axes2_in_base_x, axis_x_prps_axes2_in_base_y,
@@ -1655,12 +1650,11 @@ def _required_before(c, X, V, A, f):
 def _required_prps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
-        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
-        prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
-        prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-        prps_link1_mass, prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-        prps_platform_point_z, size, size_t_6,
+    Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
+        prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
+        prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
+        prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
+        prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size, size_t_6,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -1686,13 +1680,12 @@ def _required_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
     axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
     axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
@@ -1717,7 +1710,7 @@ def _required_prps(c, k, x, s, f):
     )
     # (prps-V11) centripetal tensor of link 2
     W_2_t = qd_2*qd_2
-    # (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_2*g_r0_x + g_r0_y*s_2
     g_r1_y = c_2*g_r0_y - g_r0_x*s_2
     # (M8) moment of the column's unit force about the platform origin
@@ -1744,7 +1737,7 @@ def _required_prps(c, k, x, s, f):
     rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_2
     # (prps-A7) acceleration of joint 1
     qdd_2 = inv_root_2*rel_y
-    # (prps-N15) acceleration of the reference point of link 3, less gravity
+    # (prps-N11) acceleration of the reference point of link 3, less gravity
     acc_3_x = (
     S_ddot_x*axis_x_prps_axes2_in_base_x + S_ddot_y*axis_x_prps_axes2_in_base_y +
         S_ddot_z*axis_x_prps_axes2_in_base_z - g_r1_x
@@ -1754,13 +1747,13 @@ def _required_prps(c, k, x, s, f):
     S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz + S_ddot_z*prps_base_frame_zz -
         g_r0_z
     )
-    # (prps-N30) inertia force of the links from 1 outwards, the last link left out
+    # (prps-N32) inertia force of the links from 1 outwards, the last link left out
     T_1_z = acc_3_z*prps_link1_mass + acc_3_z*prps_link2_mass
-    # (prps-N24) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_z = J_group_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y - g_r1_y*h_2_x
-    # (prps-N17) inertia force of link 3 from its turning about its reference point
+    # (prps-N27) inertia moment of the links that turn with link 2, about their reference points
+    mu_2_z = Jc_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y - g_r1_y*h_2_x
+    # (prps-N13) inertia force of link 3 from its turning about its reference point
     phi_3_x = -W_2_t*h_3_x - h_3_y*qdd_2
-    # (prps-N39) leg force on the platform without actuation and without the mass at the connection point
+    # (prps-N40) leg force on the platform without actuation and without the mass at the connection point
     c_y = W_2_t*h_3_y - h_3_x*qdd_2 - inv_root_2*mu_2_z
     c_in_base_x = (
     axis_y_prps_axes2_in_base_x*c_y - T_1_z*prps_base_frame_xz -
@@ -1849,7 +1842,7 @@ def _inverse_kinematics_prps(c, k, x, s, f):
     branch_2, prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
         prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
         prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-        prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size, size_t_6,
+        prps_platform_point_x, prps_platform_point_y, prps_platform_point_z, size_t_6,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (prps-K1) from the base point to the connection point
@@ -1874,11 +1867,11 @@ def _inverse_kinematics_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
+    # (prps-K9) cosine of the angle of joint 2 from its reference direction
     inv_root_2 = 1.0/root_2
     # (prps-K11) displacement of joint 2
     q_2 = atan2(S_r0_y*inv_root_2, S_r0_x*inv_root_2)
-    ok = (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(root_2) > _TOLERANCE * size)
+    ok = (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6)
     return (ok, (), (q_1_t, q_2, root_2,),)
 
 
@@ -1969,9 +1962,8 @@ def _joint_rates_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
@@ -2098,13 +2090,12 @@ def _joint_accelerations_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
     axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
     axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
@@ -2226,12 +2217,12 @@ def _legs_before(c, X, V, A, f):
 def _legs_prps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y,
-        prps_base_frame_xx, prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx,
-        prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
-        prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
-        prps_link1_mass, prps_link2_mass, prps_link3_mass, prps_platform_point_x,
-        prps_platform_point_y, prps_platform_point_z, size, size_t_6,
+    Jc_2_zz, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_3_x, h_3_y, prps_base_frame_xx,
+        prps_base_frame_xy, prps_base_frame_xz, prps_base_frame_yx, prps_base_frame_yy,
+        prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy, prps_base_frame_zz,
+        prps_base_point_x, prps_base_point_y, prps_base_point_z, prps_link1_mass, prps_link2_mass,
+        prps_link3_mass, prps_platform_point_x, prps_platform_point_y, prps_platform_point_z,
+        size, size_t_6,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2257,13 +2248,12 @@ def _legs_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
-    # (prps-N42) inertia of the leg at the connection point, without the mass gathered there
+    # (prps-N43) inertia of the leg at the connection point, without the mass gathered there
     axis_y_prps_axes2_in_base_x = c_2*prps_base_frame_xy - prps_base_frame_xx*s_2
     axis_y_prps_axes2_in_base_y = c_2*prps_base_frame_yy - prps_base_frame_yx*s_2
     axis_y_prps_axes2_in_base_z = c_2*prps_base_frame_zy - prps_base_frame_zx*s_2
@@ -2288,7 +2278,7 @@ def _legs_prps(c, k, x, s, f):
     )
     # (prps-V11) centripetal tensor of link 2
     W_2_t = qd_2*qd_2
-    # (prps-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prps-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_2*g_r0_x + g_r0_y*s_2
     g_r1_y = c_2*g_r0_y - g_r0_x*s_2
     # (prps-A2) acceleration of the connection point without its centripetal part
@@ -2307,7 +2297,7 @@ def _legs_prps(c, k, x, s, f):
     rel_y = S_ddot_tip_y - 2.0*S_dot_tip_x*qd_2
     # (prps-A7) acceleration of joint 1
     qdd_2 = inv_root_2*rel_y
-    # (prps-N15) acceleration of the reference point of link 3, less gravity
+    # (prps-N11) acceleration of the reference point of link 3, less gravity
     acc_3_x = (
     S_ddot_x*axis_x_prps_axes2_in_base_x + S_ddot_y*axis_x_prps_axes2_in_base_y +
         S_ddot_z*axis_x_prps_axes2_in_base_z - g_r1_x
@@ -2317,13 +2307,13 @@ def _legs_prps(c, k, x, s, f):
     S_ddot_x*prps_base_frame_xz + S_ddot_y*prps_base_frame_yz + S_ddot_z*prps_base_frame_zz -
         g_r0_z
     )
-    # (prps-N30) inertia force of the links from 1 outwards, the last link left out
+    # (prps-N32) inertia force of the links from 1 outwards, the last link left out
     T_1_z = acc_3_z*prps_link1_mass + acc_3_z*prps_link2_mass
-    # (prps-N24) inertia moment of the links that turn with link 2, about their reference points
-    mu_2_z = J_group_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y - g_r1_y*h_2_x
-    # (prps-N39) leg force on the platform without actuation and without the mass at the connection point
+    # (prps-N27) inertia moment of the links that turn with link 2, about their reference points
+    mu_2_z = Jc_2_zz*qdd_2 + acc_3_y*h_3_x + g_r1_x*h_2_y - acc_3_x*h_3_y - g_r1_y*h_2_x
+    # (prps-N40) leg force on the platform without actuation and without the mass at the connection point
     c_y = W_2_t*h_3_y - h_3_x*qdd_2 - inv_root_2*mu_2_z
-    # (prps-N44) leg force on the platform without actuation, the last link's mass included
+    # (prps-N45) leg force on the platform without actuation, the last link's mass included
     c_true_x = W_2_t*h_3_x + h_3_y*qdd_2 - acc_3_x*prps_link3_mass
     c_true_y = c_y - acc_3_y*prps_link3_mass
     c_true_z = -T_1_z - acc_3_z*prps_link3_mass
@@ -2405,7 +2395,7 @@ def _potential_prps(c, k, x, s, f):
         prps_base_frame_yy, prps_base_frame_yz, prps_base_frame_zx, prps_base_frame_zy,
         prps_base_frame_zz, prps_base_point_x, prps_base_point_y, prps_base_point_z,
         prps_link1_mass, prps_link2_mass, prps_platform_point_x, prps_platform_point_y,
-        prps_platform_point_z, size, size_t_6,
+        prps_platform_point_z, size_t_6,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (prps-K1) from the base point to the connection point
@@ -2430,9 +2420,8 @@ def _potential_prps(c, k, x, s, f):
     rho2_2 = S_r0_x*S_r0_x + S_r0_y*S_r0_y
     # (prps-K8) amplitude, with the sign of the branch
     root_2 = branch_2*sqrt(rho2_2)
-    # (prps-V5) reciprocal vector 2
-    inv_root_2 = 1.0/root_2
     # (prps-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
     c_2 = S_r0_x*inv_root_2
     # (prps-K10) sine of the angle of joint 2 from its reference direction
     s_2 = S_r0_y*inv_root_2
@@ -2444,7 +2433,7 @@ def _potential_prps(c, k, x, s, f):
         h_3_x*s_2) + g_r0_z*(h_1_z + h_2_z + h_3_z + potential_t_6*prps_link1_mass +
         potential_t_6*prps_link2_mass)
     )
-    ok = (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(root_2) > _TOLERANCE * size)
+    ok = (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6)
     return (ok, (potential_t_7,), (),)
 
 
@@ -2473,8 +2462,8 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             _dynamics_prps,
             "prps",
 (),
-('J_group_2_zz', 'Q_t_10', 'Q_t_11', 'Q_t_12', 'Q_t_13', 'Q_t_5', 'Q_t_6', 'Q_t_7', 'Q_t_8',
-            'Q_t_9', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
+('Jc_2_zz', 'Q_t_10', 'Q_t_11', 'Q_t_12', 'Q_t_13', 'Q_t_5', 'Q_t_6', 'Q_t_7', 'Q_t_8', 'Q_t_9',
+            'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
             'prps_base_frame_xx', 'prps_base_frame_xy', 'prps_base_frame_xz',
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
@@ -2528,8 +2517,8 @@ arrays=(('M', (6, 6)),),
             _M_prps,
             "prps",
 (),
-('J_group_2_zz', 'Q_t_10', 'Q_t_11', 'Q_t_12', 'Q_t_13', 'Q_t_5', 'Q_t_6', 'Q_t_7', 'Q_t_8',
-            'Q_t_9', 'branch_2', 'h_3_x', 'h_3_y', 'prps_base_frame_xx', 'prps_base_frame_xy',
+('Jc_2_zz', 'Q_t_10', 'Q_t_11', 'Q_t_12', 'Q_t_13', 'Q_t_5', 'Q_t_6', 'Q_t_7', 'Q_t_8', 'Q_t_9',
+            'branch_2', 'h_3_x', 'h_3_y', 'prps_base_frame_xx', 'prps_base_frame_xy',
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_zx',
             'prps_base_frame_zy', 'prps_base_point_x', 'prps_base_point_y', 'prps_base_point_z',
             'prps_platform_point_x', 'prps_platform_point_y', 'prps_platform_point_z', 'size',
@@ -2568,7 +2557,7 @@ arrays=(('Z', (6,)),),
             _Z_prps,
             "prps",
 (),
-('J_group_2_zz', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
+('Jc_2_zz', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
             'prps_base_frame_xx', 'prps_base_frame_xy', 'prps_base_frame_xz',
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
@@ -2609,7 +2598,7 @@ arrays=(('H', (6, 6)),),
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
             'prps_base_point_y', 'prps_base_point_z', 'prps_platform_point_x',
-            'prps_platform_point_y', 'prps_platform_point_z', 'size', 'size_t_6'),
+            'prps_platform_point_y', 'prps_platform_point_z', 'size_t_6'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -2645,7 +2634,7 @@ arrays=(('required', (6,)), ('H', (6, 6))),
             _required_prps,
             "prps",
 (),
-('J_group_2_zz', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
+('Jc_2_zz', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
             'prps_base_frame_xx', 'prps_base_frame_xy', 'prps_base_frame_xz',
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
@@ -2698,7 +2687,7 @@ arrays=(('q', (9,)),),
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
             'prps_base_point_y', 'prps_base_point_z', 'prps_platform_point_x',
-            'prps_platform_point_y', 'prps_platform_point_z', 'size', 'size_t_6'),
+            'prps_platform_point_y', 'prps_platform_point_z', 'size_t_6'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -2784,7 +2773,7 @@ arrays=(('leg_force', (3, 3)), ('drive', (6, 3))),
             _legs_prps,
             "prps",
 (),
-('J_group_2_zz', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
+('Jc_2_zz', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_3_x', 'h_3_y',
             'prps_base_frame_xx', 'prps_base_frame_xy', 'prps_base_frame_xz',
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
@@ -2828,7 +2817,7 @@ arrays=(('potential', (1,)),),
             'prps_base_frame_yx', 'prps_base_frame_yy', 'prps_base_frame_yz',
             'prps_base_frame_zx', 'prps_base_frame_zy', 'prps_base_frame_zz', 'prps_base_point_x',
             'prps_base_point_y', 'prps_base_point_z', 'prps_link1_mass', 'prps_link2_mass',
-            'prps_platform_point_x', 'prps_platform_point_y', 'prps_platform_point_z', 'size',
+            'prps_platform_point_x', 'prps_platform_point_y', 'prps_platform_point_z',
             'size_t_6'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),

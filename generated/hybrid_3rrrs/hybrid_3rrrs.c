@@ -449,6 +449,11 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real inv_size_t_6 = 1/size_t_2;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
         const real inv_size_t_7 = 1/size_t_3;
+        /* (rrrs-G3) inertia tensor of link 1 about the origin of link 1 */
+        const real J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
+        const real J_1_t_2 = J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+            rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
+        const real J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_t - J_1_t_2);
         /* (rrrs-G5) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
         const real J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
@@ -463,10 +468,6 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real J_2_yz = rrrs_link2_inertia_yz -
             rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
         const real J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_t_3 - J_2_t_4);
-        /* (rrrs-G4) first moment of link 2 about the origin of link 2 */
-        const real h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
-        const real h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
         /* (rrrs-G6) connection point to the centre of mass of link 3 */
         const real rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x;
         /* (rrrs-G8) inertia tensor of link 3 about the connection point */
@@ -483,17 +484,31 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real J_3_yz = rrrs_link3_inertia_yz -
             rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
         const real J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (rrrs-V9) reciprocal vector 3 */
-        const real inv_rrrs_platform_joint_offset_x = 1/rrrs_platform_joint_offset_x;
+        /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_zz = J_2_zz + J_3_zz;
+        /* (rrrs-G4) first moment of link 2 about the origin of link 2 */
+        const real h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
+        const real h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
+        const real h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_t = R(0.5)*rrrs_joint2_offset_x*rrrs_link2_mass;
         /* (rrrs-G7) first moment of link 3 about the connection point */
         const real h_3_x = rho_tip_3_x*rrrs_link3_mass;
         const real h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
         const real h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
-        /* (rrrs-G3) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
-        const real J_1_t_2 = J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-            rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
-        const real J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_t - J_1_t_2);
+        /* (rrrs-V9) reciprocal vector 3 */
+        const real inv_rrrs_platform_joint_offset_x = 1/rrrs_platform_joint_offset_x;
+        /* (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t = J_3_zz*inv_rrrs_platform_joint_offset_x;
+        const real d_Gamma_2_y = d_Gamma_2_t + h_3_x;
+        /* (rrrs-N12) coefficient of the acceleration in: inertia force of link 3 from its turning about
+           its reference point */
+        const real d_phi_3_t = h_3_y*inv_rrrs_platform_joint_offset_x;
+        /* (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -d_Gamma_2_y*inv_rrrs_platform_joint_offset_x -
+            h_3_x*inv_rrrs_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_4 = rrrs_link3_mass*rrrs_platform_point_x;
         const real h_star_t_5 = rrrs_link3_mass*rrrs_platform_point_y;
@@ -513,15 +528,15 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
             gravity_z*rrrs_base_frame_zz;
         const real g_r0_z = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx +
             gravity_z*rrrs_base_frame_zx;
-        /* (rrrs-N24) half the trace of that inertia tensor */
+        /* (rrrs-N34) half the trace of that inertia tensor */
         const real trace_J_2 = R(0.5)*J_2_xx + R(0.5)*J_2_yy + R(0.5)*J_2_zz;
-        /* (rrrs-N25) second moment of mass of the links that turn with link 2 */
+        /* (rrrs-N35) second moment of mass of the links that turn with link 2 */
         const real Sigma_2_xx = trace_J_2 - J_2_xx;
         const real Sigma_2_yy = trace_J_2 - J_2_yy;
         const real Sigma_2_zz = trace_J_2 - J_2_zz;
-        /* (rrrs-N16) half the trace of that inertia tensor */
+        /* (rrrs-N27) half the trace of that inertia tensor */
         const real trace_J_3 = R(0.5)*J_3_xx + R(0.5)*J_3_yy + R(0.5)*J_3_zz;
-        /* (rrrs-N17) second moment of mass of the links that turn with link 3 */
+        /* (rrrs-N28) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_xx = trace_J_3 - J_3_xx;
         const real Sigma_3_yy = trace_J_3 - J_3_yy;
         const real Sigma_3_zz = trace_J_3 - J_3_zz;
@@ -544,13 +559,14 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         model->J_2_xz[leg] = J_2_xz;
         model->J_2_yy[leg] = J_2_yy;
         model->J_2_yz[leg] = J_2_yz;
-        model->J_2_zz[leg] = J_2_zz;
         model->J_3_xx[leg] = J_3_xx;
         model->J_3_xy[leg] = J_3_xy;
         model->J_3_xz[leg] = J_3_xz;
         model->J_3_yy[leg] = J_3_yy;
         model->J_3_yz[leg] = J_3_yz;
         model->J_3_zz[leg] = J_3_zz;
+        model->Jc_1_t[leg] = Jc_1_t;
+        model->Jc_2_zz[leg] = Jc_2_zz;
         model->Kd_2_t[leg] = Kd_2_t;
         model->Kd_2_t_2[leg] = Kd_2_t_2;
         model->Sigma_2_xx[leg] = Sigma_2_xx;
@@ -563,6 +579,10 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         model->b_r0_y[leg] = b_r0_y;
         model->branch_1[leg] = branch_1;
         model->branch_2[leg] = branch_2;
+        model->d_Gamma_2_t[leg] = d_Gamma_2_t;
+        model->d_Gamma_2_y[leg] = d_Gamma_2_y;
+        model->d_c_yy[leg] = d_c_yy;
+        model->d_phi_3_t[leg] = d_phi_3_t;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->g_r0_z[leg] = g_r0_z;
@@ -656,7 +676,7 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1380 mul, 1023 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 1359 mul, 1020 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -854,13 +874,14 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real J_2_xz = m->J_2_xz[i];
         const real J_2_yy = m->J_2_yy[i];
         const real J_2_yz = m->J_2_yz[i];
-        const real J_2_zz = m->J_2_zz[i];
         const real J_3_xx = m->J_3_xx[i];
         const real J_3_xy = m->J_3_xy[i];
         const real J_3_xz = m->J_3_xz[i];
         const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
+        const real Jc_1_t = m->Jc_1_t[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real Kd_2_t = m->Kd_2_t[i];
         const real Kd_2_t_2 = m->Kd_2_t_2[i];
         const real Sigma_2_xx = m->Sigma_2_xx[i];
@@ -871,6 +892,10 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real Sigma_3_zz = m->Sigma_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real d_Gamma_2_t = m->d_Gamma_2_t[i];
+        const real d_Gamma_2_y = m->d_Gamma_2_y[i];
+        const real d_c_yy = m->d_c_yy[i];
+        const real d_phi_3_t = m->d_phi_3_t[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
@@ -995,50 +1020,52 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
         const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
+        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        const real J_3_t = J_3_xy*s_3;
+        const real _x = J_3_t + J_3_xx*c_3;
+        const real J_3_t_2 = J_3_xy*c_3;
+        const real _x_2 = J_3_t_2 + J_3_yy*s_3;
+        const real _x_3 = J_3_xz*c_3 + J_3_yz*s_3;
+        const real _y = J_3_yz*c_3 - J_3_xz*s_3;
+        /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3;
+        const real _y_2 = -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) -
+            s_3*(J_3_t_2 - J_3_xx*s_3))) - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3));
+        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2);
+        /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rrrs-V8) reciprocal vector 2 */
         const real inv_r_2_r0_y = 1/r_2_r0_y;
-        /* (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_v_1_z*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_v_1_z;
-        /* (rrrs-V8) reciprocal vector 2 */
-        const real w_2_t = c_3*inv_r_2_r0_y;
-        const real w_2_t_2 = inv_r_2_r0_y*s_3;
         /* (rrrs-V9) reciprocal vector 3 */
         const real w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x;
-        /* (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x = d_alpha_1_t_2*s_3 - c_3*d_alpha_1_t;
-        const real _y = -c_3*d_alpha_1_t_2 - d_alpha_1_t*s_3;
-        /* (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_zx = w_3_t - c_3*w_2_t - s_3*w_2_t_2;
-        const real d_alpha_3_zy = inv_rrrs_platform_joint_offset_x + c_3*w_2_t_2 - s_3*w_2_t;
-        /* (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xz*_x + J_3_yz*_y;
-        const real d_mu_3_xz = h_3_y + J_3_xx*_x + J_3_xy*_y;
-        const real d_mu_3_yz = J_3_xy*_x + J_3_yy*_y - h_3_x;
-        const real d_mu_3_zx = J_3_zz*d_alpha_3_zx - h_3_y;
-        const real d_mu_3_zy = h_3_x + J_3_zz*d_alpha_3_zy;
-        /* (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_zx = c_3*d_mu_3_zx + d_mu_3_zy*s_3 - J_2_zz*w_2_t;
-        const real d_N_2_zy = J_2_zz*w_2_t_2 + c_3*d_mu_3_zy - d_mu_3_zx*s_3;
-        const real _y_2 = -c_2*(c_3*d_mu_3_yz - J_2_xy*d_alpha_1_t - J_2_yy*d_alpha_1_t_2 -
-            d_mu_3_xz*s_3) - s_2*(c_3*d_mu_3_xz + d_mu_3_yz*s_3 - J_2_xx*d_alpha_1_t -
-            J_2_xy*d_alpha_1_t_2);
-        /* (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x;
+        /* (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x;
+        const real d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2);
+        /* (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2);
+        const real d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2);
+        /* (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = e_1_r2_x*inv_v_1_z;
+        const real d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z;
+        /* (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_3_zx*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zx - d_N_2_zy*s_3) -
-            d_mu_3_zx*w_3_t;
-        const real d_c_xy = d_alpha_3_zy*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zy + d_N_2_zx*s_3) -
-            d_mu_3_zy*w_3_t;
-        const real d_c_xz = inv_r_2_r0_y*(d_mu_3_t - J_2_xz*d_alpha_1_t - J_2_yz*d_alpha_1_t_2) -
-            _y*h_3_z - d_mu_3_t*w_3_t;
-        const real d_c_yz = _x*h_3_z - d_mu_3_t*inv_rrrs_platform_joint_offset_x;
-        /* (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_alpha_3_zy*h_3_x + d_mu_3_zy*inv_rrrs_platform_joint_offset_x;
+        const real d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) -
+            d_Gamma_3_x*w_3_t;
+        const real d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t;
+        const real d_c_xz = inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) -
+            d_Gamma_3_t*w_3_t - d_alpha_3_t_2*h_3_z;
+        const real d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x;
+        /* (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx - d_c_yy;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + _x*h_3_y + inv_v_1_z*(_y_2 + J_1_xx*inv_v_1_z) - _y*h_3_x;
+        const real Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y -
+            d_alpha_3_t_2*h_3_x;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_rrrs_axes3_in_base_x;
@@ -1169,18 +1196,18 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
         const real g_r3_x = -c_2*g_r1_y - g_r0_z*s_2;
         const real g_r3_y = g_r1_y*s_2 - c_2*g_r0_z;
-        /* (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = zeta_2_x - alpha_1_o_t;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (rrrs-A25) acceleration tensor of link 2 */
+        /* (rrrs-A23) acceleration tensor of link 2 */
         const real B_2_o_xy = W_2_xy + qdd_2_o;
         const real B_2_o_yx = W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x + zeta_2_x;
-        /* (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_x = B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) +
             g_r3_y*h_2_z - B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y;
@@ -1189,24 +1216,24 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             g_r3_x*h_2_z;
         const real mu_2_o_z = B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y -
             B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x;
-        /* (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x;
         const real acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3;
         const real acc_3_o_z = u_1_tip_z - g_r1_x;
-        /* (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3;
         const real alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y;
         const real alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) -
             qdd_2_o;
-        /* (rrrs-A30) acceleration tensor of link 3 */
+        /* (rrrs-A28) acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
         const real B_3_o_yz = W_3_yz - alpha_3_o_x;
         const real B_3_o_zx = W_3_xz - alpha_3_o_y;
         const real B_3_o_zy = W_3_yz + alpha_3_o_x;
-        /* (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             acc_3_o_z*h_3_y - B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z;
@@ -1214,28 +1241,28 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             B_3_o_xy*J_3_yz - B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x;
         const real mu_3_o_z = B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) +
             acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y;
-        /* (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3;
         const real N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3;
         const real N_2_o_z = mu_2_o_z + mu_3_o_z;
-        /* (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z;
-        /* (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2;
-        /* (rrrs-N48) remainder without the acceleration in: force at the connection point that balances
+        /* (rrrs-N54) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z;
-        /* (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z -
             inv_r_2_r0_y*(G_o_t*r_2_r0_x - N_2_o_z);
         const real c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z;
         const real c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y -
             N_1_o_z*inv_v_1_z;
-        /* (rrrs-N53) velocity and gravity terms of the leg force */
+        /* (rrrs-N59) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
             axis_z_rrrs_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
@@ -1255,13 +1282,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5;
         const real H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3;
         /* (rrrs-V8) reciprocal vector 2 */
-        const real w_2_t_3 = axis_x_rrrs_axes3_x*inv_r_2_r0_y;
-        const real w_2_t_4 = axis_x_rrrs_axes3_y*inv_r_2_r0_y;
-        const real w_2_t_5 = axis_x_rrrs_axes3_z*inv_r_2_r0_y;
+        const real w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y;
+        const real w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y;
+        const real w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_2_x = q_in_base_z*w_2_t_4 - q_in_base_y*w_2_t_5;
-        const real H_a_2_y = q_in_base_x*w_2_t_5 - q_in_base_z*w_2_t_3;
-        const real H_a_2_z = q_in_base_y*w_2_t_3 - q_in_base_x*w_2_t_4;
+        const real H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3;
+        const real H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t;
+        const real H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2;
         o->sum[0][k] = Q_t_12;  /* total_rrrs_xx */
         o->sum[1][k] = Q_t_13;  /* total_rrrs_xy */
         o->sum[2][k] = Q_t_14;  /* total_rrrs_xz */
@@ -1295,9 +1322,9 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         o->entry[3][k] = H_a_1_x;
         o->entry[4][k] = H_a_1_y;
         o->entry[5][k] = H_a_1_z;
-        o->entry[6][k] = -w_2_t_3;
-        o->entry[7][k] = -w_2_t_4;
-        o->entry[8][k] = -w_2_t_5;
+        o->entry[6][k] = -w_2_t;
+        o->entry[7][k] = -w_2_t_2;
+        o->entry[8][k] = -w_2_t_3;
         o->entry[9][k] = H_a_2_x;
         o->entry[10][k] = H_a_2_y;
         o->entry[11][k] = H_a_2_z;
@@ -1493,7 +1520,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 696 mul, 498 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 675 mul, 495 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1623,17 +1650,24 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_2_xz = m->J_2_xz[i];
         const real J_2_yy = m->J_2_yy[i];
         const real J_2_yz = m->J_2_yz[i];
-        const real J_2_zz = m->J_2_zz[i];
         const real J_3_xx = m->J_3_xx[i];
         const real J_3_xy = m->J_3_xy[i];
         const real J_3_xz = m->J_3_xz[i];
         const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
+        const real Jc_1_t = m->Jc_1_t[i];
+        const real Jc_2_zz = m->Jc_2_zz[i];
         const real Kd_2_t = m->Kd_2_t[i];
         const real Kd_2_t_2 = m->Kd_2_t_2[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real d_Gamma_2_t = m->d_Gamma_2_t[i];
+        const real d_Gamma_2_y = m->d_Gamma_2_y[i];
+        const real d_c_yy = m->d_c_yy[i];
+        const real d_phi_3_t = m->d_phi_3_t[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -1725,6 +1759,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x -
             r_1_r1_y*s_3);
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
+        const real r_2_r0_x = c_3*r_2_x + r_2_t*s_3;
         const real r_2_r0_y = r_2_x*s_3 - c_3*r_2_t;
         /* (rrrs-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1 = 1/rho2_1;
@@ -1749,50 +1784,52 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
         const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
+        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        const real J_3_t = J_3_xy*s_3;
+        const real _x = J_3_t + J_3_xx*c_3;
+        const real J_3_t_2 = J_3_xy*c_3;
+        const real _x_2 = J_3_t_2 + J_3_yy*s_3;
+        const real _x_3 = J_3_xz*c_3 + J_3_yz*s_3;
+        const real _y = J_3_yz*c_3 - J_3_xz*s_3;
+        /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3;
+        const real _y_2 = -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) -
+            s_3*(J_3_t_2 - J_3_xx*s_3))) - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3));
+        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2);
+        /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rrrs-V8) reciprocal vector 2 */
         const real inv_r_2_r0_y = 1/r_2_r0_y;
-        /* (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_v_1_z*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_v_1_z;
-        /* (rrrs-V8) reciprocal vector 2 */
-        const real w_2_t = c_3*inv_r_2_r0_y;
-        const real w_2_t_2 = inv_r_2_r0_y*s_3;
         /* (rrrs-V9) reciprocal vector 3 */
-        const real w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*(c_3*r_2_x + r_2_t*s_3);
-        /* (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x = d_alpha_1_t_2*s_3 - c_3*d_alpha_1_t;
-        const real _y = -c_3*d_alpha_1_t_2 - d_alpha_1_t*s_3;
-        /* (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_zx = w_3_t - c_3*w_2_t - s_3*w_2_t_2;
-        const real d_alpha_3_zy = inv_rrrs_platform_joint_offset_x + c_3*w_2_t_2 - s_3*w_2_t;
-        /* (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_t = J_3_xz*_x + J_3_yz*_y;
-        const real d_mu_3_xz = h_3_y + J_3_xx*_x + J_3_xy*_y;
-        const real d_mu_3_yz = J_3_xy*_x + J_3_yy*_y - h_3_x;
-        const real d_mu_3_zx = J_3_zz*d_alpha_3_zx - h_3_y;
-        const real d_mu_3_zy = h_3_x + J_3_zz*d_alpha_3_zy;
-        /* (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_zx = c_3*d_mu_3_zx + d_mu_3_zy*s_3 - J_2_zz*w_2_t;
-        const real d_N_2_zy = J_2_zz*w_2_t_2 + c_3*d_mu_3_zy - d_mu_3_zx*s_3;
-        const real _y_2 = -c_2*(c_3*d_mu_3_yz - J_2_xy*d_alpha_1_t - J_2_yy*d_alpha_1_t_2 -
-            d_mu_3_xz*s_3) - s_2*(c_3*d_mu_3_xz + d_mu_3_yz*s_3 - J_2_xx*d_alpha_1_t -
-            J_2_xy*d_alpha_1_t_2);
-        /* (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x;
+        /* (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x;
+        /* (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x;
+        const real d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2);
+        /* (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2);
+        const real d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2);
+        /* (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_t = e_1_r2_x*inv_v_1_z;
+        const real d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z;
+        /* (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_3_zx*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zx - d_N_2_zy*s_3) -
-            d_mu_3_zx*w_3_t;
-        const real d_c_xy = d_alpha_3_zy*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zy + d_N_2_zx*s_3) -
-            d_mu_3_zy*w_3_t;
-        const real d_c_xz = inv_r_2_r0_y*(d_mu_3_t - J_2_xz*d_alpha_1_t - J_2_yz*d_alpha_1_t_2) -
-            _y*h_3_z - d_mu_3_t*w_3_t;
-        const real d_c_yz = _x*h_3_z - d_mu_3_t*inv_rrrs_platform_joint_offset_x;
-        /* (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_alpha_3_zy*h_3_x + d_mu_3_zy*inv_rrrs_platform_joint_offset_x;
+        const real d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) -
+            d_Gamma_3_x*w_3_t;
+        const real d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t;
+        const real d_c_xz = inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) -
+            d_Gamma_3_t*w_3_t - d_alpha_3_t_2*h_3_z;
+        const real d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x;
+        /* (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx - d_c_yy;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + _x*h_3_y + inv_v_1_z*(_y_2 + J_1_xx*inv_v_1_z) - _y*h_3_x;
+        const real Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y -
+            d_alpha_3_t_2*h_3_x;
         const real Q_t_4 = R(0.5)*Q_t_3;
         const real Q_t_5 = axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
             Q_t_2*axis_y_rrrs_axes3_in_base_x;
@@ -2393,18 +2430,18 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
         const real g_r3_x = -c_2*g_r1_y - g_r0_z*s_2;
         const real g_r3_y = g_r1_y*s_2 - c_2*g_r0_z;
-        /* (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_o_t = qdd_1_o*s_2;
         const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = zeta_2_x - alpha_1_o_t;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (rrrs-A25) acceleration tensor of link 2 */
+        /* (rrrs-A23) acceleration tensor of link 2 */
         const real B_2_o_xy = W_2_xy + qdd_2_o;
         const real B_2_o_yx = W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x + zeta_2_x;
-        /* (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_x = B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) +
             g_r3_y*h_2_z - B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y;
@@ -2413,24 +2450,24 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
             g_r3_x*h_2_z;
         const real mu_2_o_z = B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y -
             B_2_o_xy*Sigma_2_yy - J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x;
-        /* (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x;
         const real acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3;
         const real acc_3_o_z = u_1_tip_z - g_r1_x;
-        /* (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3;
         const real alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y;
         const real alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) -
             qdd_2_o;
-        /* (rrrs-A30) acceleration tensor of link 3 */
+        /* (rrrs-A28) acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
         const real B_3_o_yz = W_3_yz - alpha_3_o_x;
         const real B_3_o_zx = W_3_xz - alpha_3_o_y;
         const real B_3_o_zy = W_3_yz + alpha_3_o_x;
-        /* (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_o_x = B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             acc_3_o_z*h_3_y - B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z;
@@ -2438,28 +2475,28 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
             B_3_o_xy*J_3_yz - B_3_o_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_o_z*h_3_x;
         const real mu_3_o_z = B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) +
             acc_3_o_y*h_3_x - B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y;
-        /* (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3;
         const real N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3;
         const real N_2_o_z = mu_2_o_z + mu_3_o_z;
-        /* (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z;
-        /* (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2;
-        /* (rrrs-N48) remainder without the acceleration in: force at the connection point that balances
+        /* (rrrs-N54) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z;
-        /* (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z -
             inv_r_2_r0_y*(G_o_t*r_2_r0_x - N_2_o_z);
         const real c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z;
         const real c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y -
             N_1_o_z*inv_v_1_z;
-        /* (rrrs-N53) velocity and gravity terms of the leg force */
+        /* (rrrs-N59) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
             axis_z_rrrs_axes3_in_base_x*c_o_z;
         const real U_in_base_y = -axis_x_rrrs_axes3_y*c_o_x - axis_y_rrrs_axes3_in_base_y*c_o_y -
@@ -3296,7 +3333,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-A10) acceleration of joint 1 */
         const real qdd_2 = inv_r_2_r0_y*rel_x;
         const real qdd_1 = inv_v_1_z*rel_z;
-        /* (rrrs-N11) acceleration of the reference point of link 3, less gravity */
+        /* (rrrs-N9) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x -
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real acc_3_y = S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
@@ -3306,53 +3343,53 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-A16) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_2;
         const real alpha_1_t_2 = c_2*qdd_1;
-        /* (rrrs-A21) angular acceleration of link 2 */
+        /* (rrrs-A20) angular acceleration of link 2 */
         const real alpha_2_x = zeta_2_x - alpha_1_t;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (rrrs-A24) acceleration tensor of link 2 */
+        /* (rrrs-A22) acceleration tensor of link 2 */
         const real B_2_xy = W_2_xy + qdd_2;
         const real B_2_yx = W_2_xy - qdd_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x + zeta_2_x;
-        /* (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_x = B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) +
             g_r3_y*h_2_z - B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y;
         const real mu_2_y = B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx -
             J_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z;
         const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y -
             B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x;
-        /* (rrrs-A26) angular acceleration of link 3 */
+        /* (rrrs-A24) angular acceleration of link 3 */
         const real alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3;
         const real alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y;
         const real alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2;
-        /* (rrrs-A29) acceleration tensor of link 3 */
+        /* (rrrs-A27) acceleration tensor of link 3 */
         const real B_3_xy = W_3_xy - alpha_3_z;
         const real B_3_xz = W_3_xz + alpha_3_y;
         const real B_3_yx = W_3_xy + alpha_3_z;
         const real B_3_yz = W_3_yz - alpha_3_x;
         const real B_3_zx = W_3_xz - alpha_3_y;
         const real B_3_zy = W_3_yz + alpha_3_x;
-        /* (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             acc_3_z*h_3_y - B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z;
         const real mu_3_y = B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz -
             B_3_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x;
         const real mu_3_z = B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) +
             acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y;
-        /* (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3;
         const real N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3;
         const real N_2_z = mu_2_z + mu_3_z;
-        /* (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z;
-        /* (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2;
-        /* (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_rrrs_platform_joint_offset_x*mu_3_z;
-        /* (rrrs-N49) leg force on the platform without actuation and without the mass at the connection
+        /* (rrrs-N55) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z -
             inv_r_2_r0_y*(G_t*r_2_r0_x - N_2_z);
@@ -4731,7 +4768,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         /* (rrrs-A10) acceleration of joint 1 */
         const real qdd_2 = inv_r_2_r0_y*rel_x;
         const real qdd_1 = inv_v_1_z*rel_z;
-        /* (rrrs-N11) acceleration of the reference point of link 3, less gravity */
+        /* (rrrs-N9) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x -
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real acc_3_y = S_ddot_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
@@ -4741,59 +4778,59 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         /* (rrrs-A16) angular acceleration of link 1 */
         const real alpha_1_t = qdd_1*s_2;
         const real alpha_1_t_2 = c_2*qdd_1;
-        /* (rrrs-A21) angular acceleration of link 2 */
+        /* (rrrs-A20) angular acceleration of link 2 */
         const real alpha_2_x = zeta_2_x - alpha_1_t;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (rrrs-A24) acceleration tensor of link 2 */
+        /* (rrrs-A22) acceleration tensor of link 2 */
         const real B_2_xy = W_2_xy + qdd_2;
         const real B_2_yx = W_2_xy - qdd_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x + zeta_2_x;
-        /* (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_x = B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) +
             g_r3_y*h_2_z - B_2_zx*J_2_xy - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y;
         const real mu_2_y = B_2_zy*J_2_xy + g_r1_x*h_2_x - B_2_xy*J_2_yz - B_2_zx*Sigma_2_xx -
             J_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - g_r3_x*h_2_z;
         const real mu_2_z = B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y -
             B_2_xy*Sigma_2_yy - J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x;
-        /* (rrrs-A26) angular acceleration of link 3 */
+        /* (rrrs-A24) angular acceleration of link 3 */
         const real alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3;
         const real alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y;
         const real alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2;
-        /* (rrrs-A29) acceleration tensor of link 3 */
+        /* (rrrs-A27) acceleration tensor of link 3 */
         const real B_3_xy = W_3_xy - alpha_3_z;
         const real B_3_xz = W_3_xz + alpha_3_y;
         const real B_3_yx = W_3_xy + alpha_3_z;
         const real B_3_yz = W_3_yz - alpha_3_x;
         const real B_3_zx = W_3_xz - alpha_3_y;
         const real B_3_zy = W_3_yz + alpha_3_x;
-        /* (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_x = B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) +
             acc_3_z*h_3_y - B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z;
         const real mu_3_y = B_3_xz*Sigma_3_zz + B_3_zy*J_3_xy + acc_3_x*h_3_z - B_3_xy*J_3_yz -
             B_3_zx*Sigma_3_xx - J_3_xz*(W_3_t - W_3_t_3) - acc_3_z*h_3_x;
         const real mu_3_z = B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) +
             acc_3_y*h_3_x - B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y;
-        /* (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3;
         const real N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3;
         const real N_2_z = mu_2_z + mu_3_z;
-        /* (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z;
-        /* (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2;
-        /* (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_rrrs_platform_joint_offset_x*mu_3_z;
-        /* (rrrs-N49) leg force on the platform without actuation and without the mass at the connection
+        /* (rrrs-N55) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z -
             inv_r_2_r0_y*(G_t*r_2_r0_x - N_2_z);
         const real c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z;
         const real c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z;
-        /* (rrrs-N54) leg force on the platform without actuation, the last link's mass included */
+        /* (rrrs-N60) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_3_x*rrrs_link3_mass;
         const real c_true_y = c_y - acc_3_y*rrrs_link3_mass;
         const real c_true_z = c_z - acc_3_z*rrrs_link3_mass;

@@ -384,6 +384,13 @@ def _prepare(p):
     inv_size_t_6 = 1.0/size_t_2
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
     inv_size_t_7 = 1.0/size_t_3
+    # (rrrs-G3) inertia tensor of link 1 about the origin of link 1
+    J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
+    J_1_t_2 = (
+    J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    )
+    J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_t - J_1_t_2)
     # (rrrs-G5) inertia tensor of link 2 about the origin of link 2
     J_2_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
     J_2_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
@@ -404,10 +411,6 @@ def _prepare(p):
         rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
     )
     J_2_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_t_3 - J_2_t_4)
-    # (rrrs-G4) first moment of link 2 about the origin of link 2
-    h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
-    h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
     # (rrrs-G6) connection point to the centre of mass of link 3
     rho_tip_3_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
     # (rrrs-G8) inertia tensor of link 3 about the connection point
@@ -424,19 +427,29 @@ def _prepare(p):
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
     J_3_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rrrs-V9) reciprocal vector 3
-    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_zz = J_2_zz + J_3_zz
+    # (rrrs-G4) first moment of link 2 about the origin of link 2
+    h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
+    h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t = 0.5*rrrs_joint2_offset_x*rrrs_link2_mass
     # (rrrs-G7) first moment of link 3 about the connection point
     h_3_x = rho_tip_3_x*rrrs_link3_mass
     h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
     h_3_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    # (rrrs-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
-    J_1_t_2 = (
-    J_1_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    # (rrrs-V9) reciprocal vector 3
+    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = J_3_zz*inv_rrrs_platform_joint_offset_x
+    d_Gamma_2_y = d_Gamma_2_t + h_3_x
+    # (rrrs-N12) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    d_phi_3_t = h_3_y*inv_rrrs_platform_joint_offset_x
+    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_yy = (
+    -d_Gamma_2_y*inv_rrrs_platform_joint_offset_x - h_3_x*inv_rrrs_platform_joint_offset_x
     )
-    J_1_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_t - J_1_t_2)
     # (L2) first moment about the platform origin
     h_star_t_4 = rrrs_link3_mass*rrrs_platform_point_x
     h_star_t_5 = rrrs_link3_mass*rrrs_platform_point_y
@@ -458,15 +471,15 @@ def _prepare(p):
     g_r0_z = (
     gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
     )
-    # (rrrs-N24) half the trace of that inertia tensor
+    # (rrrs-N34) half the trace of that inertia tensor
     trace_J_2 = 0.5*J_2_xx + 0.5*J_2_yy + 0.5*J_2_zz
-    # (rrrs-N25) second moment of mass of the links that turn with link 2
+    # (rrrs-N35) second moment of mass of the links that turn with link 2
     Sigma_2_xx = trace_J_2 - J_2_xx
     Sigma_2_yy = trace_J_2 - J_2_yy
     Sigma_2_zz = trace_J_2 - J_2_zz
-    # (rrrs-N16) half the trace of that inertia tensor
+    # (rrrs-N27) half the trace of that inertia tensor
     trace_J_3 = 0.5*J_3_xx + 0.5*J_3_yy + 0.5*J_3_zz
-    # (rrrs-N17) second moment of mass of the links that turn with link 3
+    # (rrrs-N28) second moment of mass of the links that turn with link 3
     Sigma_3_xx = trace_J_3 - J_3_xx
     Sigma_3_yy = trace_J_3 - J_3_yy
     Sigma_3_zz = trace_J_3 - J_3_zz
@@ -548,13 +561,14 @@ def _prepare(p):
             "J_2_xz": np.broadcast_to(J_2_xz, _rrrs),
             "J_2_yy": np.broadcast_to(J_2_yy, _rrrs),
             "J_2_yz": np.broadcast_to(J_2_yz, _rrrs),
-            "J_2_zz": np.broadcast_to(J_2_zz, _rrrs),
             "J_3_xx": np.broadcast_to(J_3_xx, _rrrs),
             "J_3_xy": np.broadcast_to(J_3_xy, _rrrs),
             "J_3_xz": np.broadcast_to(J_3_xz, _rrrs),
             "J_3_yy": np.broadcast_to(J_3_yy, _rrrs),
             "J_3_yz": np.broadcast_to(J_3_yz, _rrrs),
             "J_3_zz": np.broadcast_to(J_3_zz, _rrrs),
+            "Jc_1_t": np.broadcast_to(Jc_1_t, _rrrs),
+            "Jc_2_zz": np.broadcast_to(Jc_2_zz, _rrrs),
             "Kd_2_t": np.broadcast_to(Kd_2_t, _rrrs),
             "Kd_2_t_2": np.broadcast_to(Kd_2_t_2, _rrrs),
             "Sigma_2_xx": np.broadcast_to(Sigma_2_xx, _rrrs),
@@ -567,6 +581,10 @@ def _prepare(p):
             "b_r0_y": np.broadcast_to(b_r0_y, _rrrs),
             "branch_1": np.broadcast_to(branch_1, _rrrs),
             "branch_2": np.broadcast_to(branch_2, _rrrs),
+            "d_Gamma_2_t": np.broadcast_to(d_Gamma_2_t, _rrrs),
+            "d_Gamma_2_y": np.broadcast_to(d_Gamma_2_y, _rrrs),
+            "d_c_yy": np.broadcast_to(d_c_yy, _rrrs),
+            "d_phi_3_t": np.broadcast_to(d_phi_3_t, _rrrs),
             "g_r0_x": np.broadcast_to(g_r0_x, _rrrs),
             "g_r0_y": np.broadcast_to(g_r0_y, _rrrs),
             "g_r0_z": np.broadcast_to(g_r0_z, _rrrs),
@@ -761,7 +779,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 1380 mul, 1023 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1359 mul, 1020 add, 12 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -869,16 +887,16 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-        J_3_yz, J_3_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
-        Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x,
-        h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t_6,
-        inv_size_t_7, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
-        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
-        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
-        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size, size_t_8,
+    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
+        J_3_zz, Jc_1_t, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
+        Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy, d_phi_3_t,
+        g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+        inv_rrrs_platform_joint_offset_x, inv_size_t_6, inv_size_t_7, rho2_2_t,
+        rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+        rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+        rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+        rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_8,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -979,48 +997,50 @@ def _dynamics_rrrs(c, k, x, s, f):
     axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
     )
+    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    J_3_t = J_3_xy*s_3
+    _x = J_3_t + J_3_xx*c_3
+    J_3_t_2 = J_3_xy*c_3
+    _x_2 = J_3_t_2 + J_3_yy*s_3
+    _x_3 = J_3_xz*c_3 + J_3_yz*s_3
+    _y = J_3_yz*c_3 - J_3_xz*s_3
+    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
+    _y_2 = (
+    -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3))) -
+        s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
+    )
+    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2)
+    # (rrrs-V7) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rrrs-V8) reciprocal vector 2
     inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_v_1_z*s_2
-    d_alpha_1_t_2 = c_2*inv_v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = c_3*inv_r_2_r0_y
-    w_2_t_2 = inv_r_2_r0_y*s_3
     # (rrrs-V9) reciprocal vector 3
     w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
-    # (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2
-    _x = d_alpha_1_t_2*s_3 - c_3*d_alpha_1_t
-    _y = -c_3*d_alpha_1_t_2 - d_alpha_1_t*s_3
-    # (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_zx = w_3_t - c_3*w_2_t - s_3*w_2_t_2
-    d_alpha_3_zy = inv_rrrs_platform_joint_offset_x + c_3*w_2_t_2 - s_3*w_2_t
-    # (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xz*_x + J_3_yz*_y
-    d_mu_3_xz = h_3_y + J_3_xx*_x + J_3_xy*_y
-    d_mu_3_yz = J_3_xy*_x + J_3_yy*_y - h_3_x
-    d_mu_3_zx = J_3_zz*d_alpha_3_zx - h_3_y
-    d_mu_3_zy = h_3_x + J_3_zz*d_alpha_3_zy
-    # (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_zx = c_3*d_mu_3_zx + d_mu_3_zy*s_3 - J_2_zz*w_2_t
-    d_N_2_zy = J_2_zz*w_2_t_2 + c_3*d_mu_3_zy - d_mu_3_zx*s_3
-    _y_2 = (
-    -c_2*(c_3*d_mu_3_yz - J_2_xy*d_alpha_1_t - J_2_yy*d_alpha_1_t_2 - d_mu_3_xz*s_3) -
-        s_2*(c_3*d_mu_3_xz + d_mu_3_yz*s_3 - J_2_xx*d_alpha_1_t - J_2_xy*d_alpha_1_t_2)
-    )
-    # (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = d_alpha_3_zx*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zx - d_N_2_zy*s_3) - d_mu_3_zx*w_3_t
-    d_c_xy = d_alpha_3_zy*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zy + d_N_2_zx*s_3) - d_mu_3_zy*w_3_t
+    # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
+    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
+    d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
+    # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
+    d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
+    # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = e_1_r2_x*inv_v_1_z
+    d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
+    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
+    d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
     d_c_xz = (
-    inv_r_2_r0_y*(d_mu_3_t - J_2_xz*d_alpha_1_t - J_2_yz*d_alpha_1_t_2) - _y*h_3_z -
-        d_mu_3_t*w_3_t
+    inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
+        d_alpha_3_t_2*h_3_z
     )
-    d_c_yz = _x*h_3_z - d_mu_3_t*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_alpha_3_zy*h_3_x + d_mu_3_zy*inv_rrrs_platform_joint_offset_x
+    d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
+    # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + _x*h_3_y + inv_v_1_z*(_y_2 + J_1_xx*inv_v_1_z) - _y*h_3_x
+    Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
@@ -1174,18 +1194,18 @@ def _dynamics_rrrs(c, k, x, s, f):
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
     g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-    # (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1
+    # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o
-    # (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2
+    # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = zeta_2_x - alpha_1_o_t
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrs-A25) acceleration tensor of link 2
+    # (rrrs-A23) acceleration tensor of link 2
     B_2_o_xy = W_2_xy + qdd_2_o
     B_2_o_yx = W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x + zeta_2_x
-    # (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_x = (
     B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
         B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
@@ -1198,22 +1218,22 @@ def _dynamics_rrrs(c, k, x, s, f):
     B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
         J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
     )
-    # (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
     acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
     acc_3_o_z = u_1_tip_z - g_r1_x
-    # (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
     alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-    # (rrrs-A30) acceleration tensor of link 3
+    # (rrrs-A28) acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
     B_3_o_yz = W_3_yz - alpha_3_o_x
     B_3_o_zx = W_3_xz - alpha_3_o_y
     B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
         B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
@@ -1226,24 +1246,24 @@ def _dynamics_rrrs(c, k, x, s, f):
     B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
         B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
     )
-    # (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
     N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
     N_2_o_z = mu_2_o_z + mu_3_o_z
-    # (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
-    # (rrrs-N48) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
-    # (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x -
         N_2_o_z)
     )
     c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
     c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-    # (rrrs-N53) velocity and gravity terms of the leg force
+    # (rrrs-N59) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
         axis_z_rrrs_axes3_in_base_x*c_o_z
@@ -1269,19 +1289,19 @@ def _dynamics_rrrs(c, k, x, s, f):
     H_a_1_y = q_in_base_z*w_1_t_3 - q_in_base_x*w_1_t_5
     H_a_1_z = q_in_base_x*w_1_t_4 - q_in_base_y*w_1_t_3
     # (rrrs-V8) reciprocal vector 2
-    w_2_t_3 = axis_x_rrrs_axes3_x*inv_r_2_r0_y
-    w_2_t_4 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
-    w_2_t_5 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
+    w_2_t = axis_x_rrrs_axes3_x*inv_r_2_r0_y
+    w_2_t_2 = axis_x_rrrs_axes3_y*inv_r_2_r0_y
+    w_2_t_3 = axis_x_rrrs_axes3_z*inv_r_2_r0_y
     # (M9) moment of the column's unit force about the platform origin
-    H_a_2_x = q_in_base_z*w_2_t_4 - q_in_base_y*w_2_t_5
-    H_a_2_y = q_in_base_x*w_2_t_5 - q_in_base_z*w_2_t_3
-    H_a_2_z = q_in_base_y*w_2_t_3 - q_in_base_x*w_2_t_4
+    H_a_2_x = q_in_base_z*w_2_t_2 - q_in_base_y*w_2_t_3
+    H_a_2_y = q_in_base_x*w_2_t_3 - q_in_base_z*w_2_t
+    H_a_2_z = q_in_base_y*w_2_t - q_in_base_x*w_2_t_2
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_8) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * rho2_2_t) & (disc_2 >= 0.0) & (abs(v_1_z) > _TOLERANCE * size) & (abs(-r_2_r0_y) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
         M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
         M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (w_1_t_3, w_1_t_4, w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z, -w_2_t_3, -w_2_t_4, -w_2_t_5,
+        (w_1_t_3, w_1_t_4, w_1_t_5, H_a_1_x, H_a_1_y, H_a_1_z, -w_2_t, -w_2_t_2, -w_2_t_3,
         H_a_2_x, H_a_2_y, H_a_2_z,),
     )
 
@@ -1337,7 +1357,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 696 mul, 498 add, 12 div, 6 sqrt, 0 trig
+# M: 675 mul, 495 add, 12 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1408,14 +1428,15 @@ def _M_before(c, X, f):
 def _M_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
-        J_3_yz, J_3_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, h_3_x, h_3_y, h_3_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_t_6, inv_size_t_7, rho2_2_t,
-        rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-        rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-        rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-        rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-        rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size, size_t_8,
+    J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
+        J_3_zz, Jc_1_t, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y,
+        d_c_yy, d_phi_3_t, h_2_x, h_2_y, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x,
+        inv_size_t_6, inv_size_t_7, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+        rrrs_platform_point_z, size, size_t_8,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -1479,6 +1500,7 @@ def _M_rrrs(c, k, x, s, f):
     # (rrrs-V4) velocity of the connection point per rate of joint 1
     v_1_z = e_1_r2_x*(c_3*r_1_r1_y + r_1_r1_x*s_3) - e_1_r2_y*(c_3*r_1_r1_x - r_1_r1_y*s_3)
     # (rrrs-V2) from joint 2 to the connection point, along the links
+    r_2_r0_x = c_3*r_2_x + r_2_t*s_3
     r_2_r0_y = r_2_x*s_3 - c_3*r_2_t
     # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1 = 1.0/rho2_1
@@ -1512,48 +1534,50 @@ def _M_rrrs(c, k, x, s, f):
     axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
     )
+    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    J_3_t = J_3_xy*s_3
+    _x = J_3_t + J_3_xx*c_3
+    J_3_t_2 = J_3_xy*c_3
+    _x_2 = J_3_t_2 + J_3_yy*s_3
+    _x_3 = J_3_xz*c_3 + J_3_yz*s_3
+    _y = J_3_yz*c_3 - J_3_xz*s_3
+    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3
+    _y_2 = (
+    -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3))) -
+        s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
+    )
+    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2)
+    # (rrrs-V7) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rrrs-V8) reciprocal vector 2
     inv_r_2_r0_y = 1.0/r_2_r0_y
-    # (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = inv_v_1_z*s_2
-    d_alpha_1_t_2 = c_2*inv_v_1_z
-    # (rrrs-V8) reciprocal vector 2
-    w_2_t = c_3*inv_r_2_r0_y
-    w_2_t_2 = inv_r_2_r0_y*s_3
     # (rrrs-V9) reciprocal vector 3
-    w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*(c_3*r_2_x + r_2_t*s_3)
-    # (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2
-    _x = d_alpha_1_t_2*s_3 - c_3*d_alpha_1_t
-    _y = -c_3*d_alpha_1_t_2 - d_alpha_1_t*s_3
-    # (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_zx = w_3_t - c_3*w_2_t - s_3*w_2_t_2
-    d_alpha_3_zy = inv_rrrs_platform_joint_offset_x + c_3*w_2_t_2 - s_3*w_2_t
-    # (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_3_xz*_x + J_3_yz*_y
-    d_mu_3_xz = h_3_y + J_3_xx*_x + J_3_xy*_y
-    d_mu_3_yz = J_3_xy*_x + J_3_yy*_y - h_3_x
-    d_mu_3_zx = J_3_zz*d_alpha_3_zx - h_3_y
-    d_mu_3_zy = h_3_x + J_3_zz*d_alpha_3_zy
-    # (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_zx = c_3*d_mu_3_zx + d_mu_3_zy*s_3 - J_2_zz*w_2_t
-    d_N_2_zy = J_2_zz*w_2_t_2 + c_3*d_mu_3_zy - d_mu_3_zx*s_3
-    _y_2 = (
-    -c_2*(c_3*d_mu_3_yz - J_2_xy*d_alpha_1_t - J_2_yy*d_alpha_1_t_2 - d_mu_3_xz*s_3) -
-        s_2*(c_3*d_mu_3_xz + d_mu_3_yz*s_3 - J_2_xx*d_alpha_1_t - J_2_xy*d_alpha_1_t_2)
-    )
-    # (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = d_alpha_3_zx*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zx - d_N_2_zy*s_3) - d_mu_3_zx*w_3_t
-    d_c_xy = d_alpha_3_zy*h_3_y + inv_r_2_r0_y*(c_3*d_N_2_zy + d_N_2_zx*s_3) - d_mu_3_zy*w_3_t
+    w_3_t = inv_r_2_r0_y*inv_rrrs_platform_joint_offset_x*r_2_r0_x
+    # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_z = e_1_r2_x*h_3_y + inv_v_1_z*(J_1_xx + _y_2) - e_1_r2_y*h_3_x
+    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t_2 = d_Gamma_2_t*r_2_r0_x
+    d_Gamma_2_x = -h_3_y - inv_r_2_r0_y*(Jc_2_zz - d_Gamma_2_t_2)
+    # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_t = inv_v_1_z*(-_x_3*s_2 - _y*c_2)
+    d_Gamma_3_x = -h_3_y - inv_r_2_r0_y*(J_3_zz - d_Gamma_2_t_2)
+    # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_t = e_1_r2_x*inv_v_1_z
+    d_alpha_3_t_2 = e_1_r2_y*inv_v_1_z
+    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xx = d_Gamma_2_x*inv_r_2_r0_y + h_3_y*(w_3_t - inv_r_2_r0_y) - d_Gamma_3_x*w_3_t
+    d_c_xy = d_phi_3_t + d_Gamma_2_y*inv_r_2_r0_y - d_Gamma_2_y*w_3_t
     d_c_xz = (
-    inv_r_2_r0_y*(d_mu_3_t - J_2_xz*d_alpha_1_t - J_2_yz*d_alpha_1_t_2) - _y*h_3_z -
-        d_mu_3_t*w_3_t
+    inv_r_2_r0_y*inv_v_1_z*(-c_2*(J_2_yz + _y) - s_2*(J_2_xz + _x_3)) - d_Gamma_3_t*w_3_t -
+        d_alpha_3_t_2*h_3_z
     )
-    d_c_yz = _x*h_3_z - d_mu_3_t*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + d_alpha_3_zy*h_3_x + d_mu_3_zy*inv_rrrs_platform_joint_offset_x
+    d_c_yz = d_alpha_3_t*h_3_z - d_Gamma_3_t*inv_rrrs_platform_joint_offset_x
+    # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx - d_c_yy
     Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + _x*h_3_y + inv_v_1_z*(_y_2 + J_1_xx*inv_v_1_z) - _y*h_3_x
+    Q_t_3 = d_c_xx + d_Gamma_1_z*inv_v_1_z + d_alpha_3_t*h_3_y - d_alpha_3_t_2*h_3_x
     Q_t_4 = 0.5*Q_t_3
     Q_t_5 = (
     axis_x_rrrs_axes3_x*d_c_xy + axis_z_rrrs_axes3_in_base_x*d_c_yz -
@@ -1958,18 +1982,18 @@ def _Z_rrrs(c, k, x, s, f):
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     g_r3_x = -c_2*g_r1_y - g_r0_z*s_2
     g_r3_y = g_r1_y*s_2 - c_2*g_r0_z
-    # (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1
+    # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o
-    # (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2
+    # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = zeta_2_x - alpha_1_o_t
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrs-A25) acceleration tensor of link 2
+    # (rrrs-A23) acceleration tensor of link 2
     B_2_o_xy = W_2_xy + qdd_2_o
     B_2_o_yx = W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x + zeta_2_x
-    # (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_x = (
     B_2_o_yx*J_2_xz + B_2_o_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z -
         B_2_o_zx*J_2_xy - Sigma_2_zz*alpha_1_o_t - g_r1_x*h_2_y
@@ -1982,22 +2006,22 @@ def _Z_rrrs(c, k, x, s, f):
     B_2_o_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_o_xy*Sigma_2_yy -
         J_2_xz*alpha_1_o_t - J_2_yz*alpha_1_o_t_2 - g_r3_y*h_2_x
     )
-    # (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_o_x = u_1_tip_x + g_r3_y*s_3 - c_3*g_r3_x
     acc_3_o_y = u_1_tip_y - c_3*g_r3_y - g_r3_x*s_3
     acc_3_o_z = u_1_tip_z - g_r1_x
-    # (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
     alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-    # (rrrs-A30) acceleration tensor of link 3
+    # (rrrs-A28) acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
     B_3_o_yz = W_3_yz - alpha_3_o_x
     B_3_o_zx = W_3_xz - alpha_3_o_y
     B_3_o_zy = W_3_yz + alpha_3_o_x
-    # (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_o_x = (
     B_3_o_yx*J_3_xz + B_3_o_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_o_z*h_3_y -
         B_3_o_yz*Sigma_3_zz - B_3_o_zx*J_3_xy - acc_3_o_y*h_3_z
@@ -2010,24 +2034,24 @@ def _Z_rrrs(c, k, x, s, f):
     B_3_o_xz*J_3_yz + B_3_o_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_o_y*h_3_x -
         B_3_o_xy*Sigma_3_yy - B_3_o_yz*J_3_xz - acc_3_o_x*h_3_y
     )
-    # (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_o_x = mu_2_o_x + c_3*mu_3_o_x + mu_3_o_y*s_3
     N_2_o_y = mu_2_o_y + c_3*mu_3_o_y - mu_3_o_x*s_3
     N_2_o_z = mu_2_o_z + mu_3_o_z
-    # (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_o_z = J_1_xx*qdd_1_o - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_o_z = mu_1_o_z - N_2_o_x*s_2 - N_2_o_y*c_2
-    # (rrrs-N48) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_rrrs_platform_joint_offset_x*mu_3_o_z
-    # (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = (
     h_3_x*(W_3_t_2 + W_3_t_3) - B_3_o_xy*h_3_y - B_3_o_xz*h_3_z - inv_r_2_r0_y*(G_o_t*r_2_r0_x -
         N_2_o_z)
     )
     c_o_y = h_3_y*(W_3_t + W_3_t_3) - G_o_t - B_3_o_yx*h_3_x - B_3_o_yz*h_3_z
     c_o_z = h_3_z*(W_3_t + W_3_t_2) - B_3_o_zx*h_3_x - B_3_o_zy*h_3_y - N_1_o_z*inv_v_1_z
-    # (rrrs-N53) velocity and gravity terms of the leg force
+    # (rrrs-N59) velocity and gravity terms of the leg force
     U_in_base_x = (
     -axis_x_rrrs_axes3_x*c_o_x - axis_y_rrrs_axes3_in_base_x*c_o_y -
         axis_z_rrrs_axes3_in_base_x*c_o_z
@@ -2600,7 +2624,7 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-A10) acceleration of joint 1
     qdd_2 = inv_r_2_r0_y*rel_x
     qdd_1 = inv_v_1_z*rel_z
-    # (rrrs-N11) acceleration of the reference point of link 3, less gravity
+    # (rrrs-N9) acceleration of the reference point of link 3, less gravity
     acc_3_x = (
     S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
         axis_x_rrrs_axes3_z*gravity_z
@@ -2616,15 +2640,15 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-A16) angular acceleration of link 1
     alpha_1_t = qdd_1*s_2
     alpha_1_t_2 = c_2*qdd_1
-    # (rrrs-A21) angular acceleration of link 2
+    # (rrrs-A20) angular acceleration of link 2
     alpha_2_x = zeta_2_x - alpha_1_t
     alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (rrrs-A24) acceleration tensor of link 2
+    # (rrrs-A22) acceleration tensor of link 2
     B_2_xy = W_2_xy + qdd_2
     B_2_yx = W_2_xy - qdd_2
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x + zeta_2_x
-    # (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
     B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
         - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
@@ -2637,18 +2661,18 @@ def _required_rrrs(c, k, x, s, f):
     B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
         J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
     )
-    # (rrrs-A26) angular acceleration of link 3
+    # (rrrs-A24) angular acceleration of link 3
     alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
     alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
     alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
-    # (rrrs-A29) acceleration tensor of link 3
+    # (rrrs-A27) acceleration tensor of link 3
     B_3_xy = W_3_xy - alpha_3_z
     B_3_xz = W_3_xz + alpha_3_y
     B_3_yx = W_3_xy + alpha_3_z
     B_3_yz = W_3_yz - alpha_3_x
     B_3_zx = W_3_xz - alpha_3_y
     B_3_zy = W_3_yz + alpha_3_x
-    # (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
         B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
@@ -2661,17 +2685,17 @@ def _required_rrrs(c, k, x, s, f):
     B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
         B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
     )
-    # (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
     N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
     N_2_z = mu_2_z + mu_3_z
-    # (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
-    # (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
-    # (rrrs-N49) leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
     c_x = (
     h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x - N_2_z)
     )
@@ -3574,7 +3598,7 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-A10) acceleration of joint 1
     qdd_2 = inv_r_2_r0_y*rel_x
     qdd_1 = inv_v_1_z*rel_z
-    # (rrrs-N11) acceleration of the reference point of link 3, less gravity
+    # (rrrs-N9) acceleration of the reference point of link 3, less gravity
     acc_3_x = (
     S_ddot_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
         axis_x_rrrs_axes3_z*gravity_z
@@ -3590,15 +3614,15 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-A16) angular acceleration of link 1
     alpha_1_t = qdd_1*s_2
     alpha_1_t_2 = c_2*qdd_1
-    # (rrrs-A21) angular acceleration of link 2
+    # (rrrs-A20) angular acceleration of link 2
     alpha_2_x = zeta_2_x - alpha_1_t
     alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (rrrs-A24) acceleration tensor of link 2
+    # (rrrs-A22) acceleration tensor of link 2
     B_2_xy = W_2_xy + qdd_2
     B_2_yx = W_2_xy - qdd_2
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x + zeta_2_x
-    # (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
     B_2_yx*J_2_xz + B_2_zy*Sigma_2_yy + J_2_yz*(W_2_t_2 - W_2_t_3) + g_r3_y*h_2_z - B_2_zx*J_2_xy
         - Sigma_2_zz*alpha_1_t - g_r1_x*h_2_y
@@ -3611,18 +3635,18 @@ def _legs_rrrs(c, k, x, s, f):
     B_2_yx*Sigma_2_xx + J_2_xy*(W_2_t - W_2_t_2) + g_r3_x*h_2_y - B_2_xy*Sigma_2_yy -
         J_2_xz*alpha_1_t - J_2_yz*alpha_1_t_2 - g_r3_y*h_2_x
     )
-    # (rrrs-A26) angular acceleration of link 3
+    # (rrrs-A24) angular acceleration of link 3
     alpha_3_x = alpha_2_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_y*s_3
     alpha_3_y = alpha_2_x*s_3 + alpha_2_y*c_3 - zeta_3_y
     alpha_3_z = inv_rrrs_platform_joint_offset_x*(rel_y + qdd_2*r_2_r0_x) - qdd_2
-    # (rrrs-A29) acceleration tensor of link 3
+    # (rrrs-A27) acceleration tensor of link 3
     B_3_xy = W_3_xy - alpha_3_z
     B_3_xz = W_3_xz + alpha_3_y
     B_3_yx = W_3_xy + alpha_3_z
     B_3_yz = W_3_yz - alpha_3_x
     B_3_zx = W_3_xz - alpha_3_y
     B_3_zy = W_3_yz + alpha_3_x
-    # (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
     mu_3_x = (
     B_3_yx*J_3_xz + B_3_zy*Sigma_3_yy + J_3_yz*(W_3_t_2 - W_3_t_3) + acc_3_z*h_3_y -
         B_3_yz*Sigma_3_zz - B_3_zx*J_3_xy - acc_3_y*h_3_z
@@ -3635,23 +3659,23 @@ def _legs_rrrs(c, k, x, s, f):
     B_3_xz*J_3_yz + B_3_yx*Sigma_3_xx + J_3_xy*(W_3_t - W_3_t_2) + acc_3_y*h_3_x -
         B_3_xy*Sigma_3_yy - B_3_yz*J_3_xz - acc_3_x*h_3_y
     )
-    # (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_x = mu_2_x + c_3*mu_3_x + mu_3_y*s_3
     N_2_y = mu_2_y + c_3*mu_3_y - mu_3_x*s_3
     N_2_z = mu_2_z + mu_3_z
-    # (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
     mu_1_z = J_1_xx*qdd_1 - g_r1_x*h_1_y - g_r1_y*h_1_z
-    # (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_z = mu_1_z - N_2_x*s_2 - N_2_y*c_2
-    # (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_rrrs_platform_joint_offset_x*mu_3_z
-    # (rrrs-N49) leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
     c_x = (
     h_3_x*(W_3_t_2 + W_3_t_3) - B_3_xy*h_3_y - B_3_xz*h_3_z - inv_r_2_r0_y*(G_t*r_2_r0_x - N_2_z)
     )
     c_y = h_3_y*(W_3_t + W_3_t_3) - G_t - B_3_yx*h_3_x - B_3_yz*h_3_z
     c_z = h_3_z*(W_3_t + W_3_t_2) - B_3_zx*h_3_x - B_3_zy*h_3_y - N_1_z*inv_v_1_z
-    # (rrrs-N54) leg force on the platform without actuation, the last link's mass included
+    # (rrrs-N60) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_3_x*rrrs_link3_mass
     c_true_y = c_y - acc_3_y*rrrs_link3_mass
     c_true_z = c_z - acc_3_z*rrrs_link3_mass
@@ -3835,18 +3859,18 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             _dynamics_rrrs,
             "rrrs",
 (),
-('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
-            'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Kd_2_t', 'Kd_2_t_2', 'Sigma_2_xx',
+('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
+            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_1_t', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'Sigma_2_xx',
             'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'branch_1',
-            'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_t_6',
-            'inv_size_t_7', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size',
-            'size_t_8'),
+            'branch_2', 'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'g_r0_x', 'g_r0_y',
+            'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_t_6', 'inv_size_t_7', 'rho2_2_t',
+            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
+            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
+            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
+            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
+            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size', 'size_t_8'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -3894,8 +3918,9 @@ arrays=(('M', (6, 6)),),
             _M_rrrs,
             "rrrs",
 (),
-('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
-            'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2',
+('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
+            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_1_t', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'branch_1',
+            'branch_2', 'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'h_2_x', 'h_2_y',
             'h_3_x', 'h_3_y', 'h_3_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_t_6',
             'inv_size_t_7', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
             'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',

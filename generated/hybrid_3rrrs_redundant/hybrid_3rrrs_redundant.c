@@ -549,6 +549,30 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real inv_size_rrrrs_t_7 = 1/size_rrrrs_t_2;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
         const real inv_size_rrrrs_t_8 = 1/size_rrrrs_t_3;
+        /* (rrrrs-G3) inertia tensor of link 1 about the origin of link 1 */
+        const real J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x;
+        const real J_1_rrrrs_t_2 = J_1_rrrrs_t +
+            rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
+            rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z;
+        const real J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t -
+            J_1_rrrrs_t_2);
+        /* (rrrrs-G5) inertia tensor of link 2 about the origin of link 2 */
+        const real J_2_rrrrs_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x;
+        const real J_2_rrrrs_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y;
+        const real J_2_rrrrs_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z;
+        const real J_2_rrrrs_t_4 = J_2_rrrrs_t + J_2_rrrrs_t_2 + J_2_rrrrs_t_3;
+        const real J_2_rrrrs_xx = rrrrs_link2_inertia_xx - rrrrs_link2_mass*(J_2_rrrrs_t -
+            J_2_rrrrs_t_4);
+        const real J_2_rrrrs_xy = rrrrs_link2_inertia_xy -
+            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
+        const real J_2_rrrrs_xz = rrrrs_link2_inertia_xz -
+            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
+        const real J_2_rrrrs_yy = rrrrs_link2_inertia_yy - rrrrs_link2_mass*(J_2_rrrrs_t_2 -
+            J_2_rrrrs_t_4);
+        const real J_2_rrrrs_yz = rrrrs_link2_inertia_yz -
+            rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
+        const real J_2_rrrrs_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(J_2_rrrrs_t_3 -
+            J_2_rrrrs_t_4);
         /* (rrrrs-G7) inertia tensor of link 3 about the origin of link 3 */
         const real J_3_rrrrs_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x;
         const real J_3_rrrrs_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y;
@@ -566,10 +590,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
         const real J_3_rrrrs_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(J_3_rrrrs_t_3 -
             J_3_rrrrs_t_4);
-        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
-        const real h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass;
-        const real h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
-        const real h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
         /* (rrrrs-G8) connection point to the centre of mass of link 4 */
         const real rho_tip_4_rrrrs_x = rrrrs_link4_centre_of_mass_x -
             rrrrs_platform_joint_offset_x;
@@ -590,40 +610,43 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
         const real J_4_rrrrs_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(J_4_rrrrs_t_3 -
             J_4_rrrrs_t_4);
-        /* (rrrrs-V11) reciprocal vector 3 */
-        const real inv_rrrrs_platform_joint_offset_x = 1/rrrrs_platform_joint_offset_x;
-        /* (rrrrs-G9) first moment of link 4 about the connection point */
-        const real h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass;
-        const real h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass;
-        const real h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
-        /* (rrrrs-G5) inertia tensor of link 2 about the origin of link 2 */
-        const real J_2_rrrrs_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x;
-        const real J_2_rrrrs_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y;
-        const real J_2_rrrrs_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z;
-        const real J_2_rrrrs_t_4 = J_2_rrrrs_t + J_2_rrrrs_t_2 + J_2_rrrrs_t_3;
-        const real J_2_rrrrs_xx = rrrrs_link2_inertia_xx - rrrrs_link2_mass*(J_2_rrrrs_t -
-            J_2_rrrrs_t_4);
-        const real J_2_rrrrs_xy = rrrrs_link2_inertia_xy -
-            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
-        const real J_2_rrrrs_xz = rrrrs_link2_inertia_xz -
-            rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        const real J_2_rrrrs_yy = rrrrs_link2_inertia_yy - rrrrs_link2_mass*(J_2_rrrrs_t_2 -
-            J_2_rrrrs_t_4);
-        const real J_2_rrrrs_yz = rrrrs_link2_inertia_yz -
-            rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        const real J_2_rrrrs_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(J_2_rrrrs_t_3 -
-            J_2_rrrrs_t_4);
+        /* (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3 */
+        const real Jc_3_rrrrs_zz = J_3_rrrrs_zz + J_4_rrrrs_zz;
+        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        const real h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass;
+        const real h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
+        const real h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
+        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_rrrrs_t = R(0.5)*rrrrs_link3_mass;
+        const real Jc_2_rrrrs_t_2 = Jc_2_rrrrs_t*rrrrs_joint3_offset_x;
+        const real Jc_2_rrrrs_t_3 = h_3_rrrrs_z*rrrrs_joint3_offset_x;
         /* (rrrrs-G4) first moment of link 2 about the origin of link 2 */
         const real h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass;
         const real h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
         const real h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        /* (rrrrs-G3) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x;
-        const real J_1_rrrrs_t_2 = J_1_rrrrs_t +
-            rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
-            rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z;
-        const real J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t -
-            J_1_rrrrs_t_2);
+        /* (rrrrs-N33) first moment of the links from 2 outwards */
+        const real hc_2_rrrrs_t = rrrrs_joint3_offset_x*rrrrs_link3_mass;
+        /* (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrrrs_t = rrrrs_joint2_offset_x*(Jc_2_rrrrs_t + R(0.5)*rrrrs_link2_mass);
+        /* (rrrrs-G9) first moment of link 4 about the connection point */
+        const real h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass;
+        const real h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass;
+        const real h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
+        /* (rrrrs-V11) reciprocal vector 3 */
+        const real inv_rrrrs_platform_joint_offset_x = 1/rrrrs_platform_joint_offset_x;
+        /* (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real d_Gamma_3_rrrrs_t = J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x;
+        const real d_Gamma_3_rrrrs_y = d_Gamma_3_rrrrs_t + h_4_rrrrs_x;
+        /* (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_rrrrs_t = d_Gamma_3_rrrrs_y*inv_rrrrs_platform_joint_offset_x;
+        /* (rrrrs-N18) coefficient of the acceleration in: inertia force of link 4 from its turning about
+           its reference point */
+        const real d_phi_4_rrrrs_t = h_4_rrrrs_y*inv_rrrrs_platform_joint_offset_x;
+        /* (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrrrs_yy = -d_G_rrrrs_t - h_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_4 = rrrrs_link4_mass*rrrrs_platform_point_x;
         const real h_star_t_5 = rrrrs_link4_mass*rrrrs_platform_point_y;
@@ -635,7 +658,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real J_star_t_14 = rrrrs_link4_mass*(size_rrrrs_t_5 - size_rrrrs_t_7);
         const real J_star_t_15 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z;
         const real J_star_t_16 = rrrrs_link4_mass*(size_rrrrs_t_6 - size_rrrrs_t_7);
-        /* (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real g_r0_x = gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy +
             gravity_z*rrrrs_base_frame_zy;
@@ -643,24 +666,24 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             gravity_z*rrrrs_base_frame_zz;
         const real g_r0_z = gravity_x*rrrrs_base_frame_xx + gravity_y*rrrrs_base_frame_yx +
             gravity_z*rrrrs_base_frame_zx;
-        /* (rrrrs-N38) half the trace of that inertia tensor */
+        /* (rrrrs-N51) half the trace of that inertia tensor */
         const real trace_J_3_rrrrs_rrrrs = R(0.5)*J_3_rrrrs_xx + R(0.5)*J_3_rrrrs_yy +
             R(0.5)*J_3_rrrrs_zz;
-        /* (rrrrs-N39) second moment of mass of the links that turn with link 3 */
+        /* (rrrrs-N52) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_rrrrs_xx = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_xx;
         const real Sigma_3_rrrrs_yy = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_yy;
         const real Sigma_3_rrrrs_zz = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_zz;
-        /* (rrrrs-N28) half the trace of that inertia tensor */
+        /* (rrrrs-N43) half the trace of that inertia tensor */
         const real trace_J_4_rrrrs_rrrrs = R(0.5)*J_4_rrrrs_xx + R(0.5)*J_4_rrrrs_yy +
             R(0.5)*J_4_rrrrs_zz;
-        /* (rrrrs-N29) second moment of mass of the links that turn with link 4 */
+        /* (rrrrs-N44) second moment of mass of the links that turn with link 4 */
         const real Sigma_4_rrrrs_xx = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_xx;
         const real Sigma_4_rrrrs_yy = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_yy;
         const real Sigma_4_rrrrs_zz = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_zz;
-        /* (rrrrs-N52) half the trace of that inertia tensor */
+        /* (rrrrs-N61) half the trace of that inertia tensor */
         const real trace_J_2_rrrrs_rrrrs = R(0.5)*J_2_rrrrs_xx + R(0.5)*J_2_rrrrs_yy +
             R(0.5)*J_2_rrrrs_zz;
-        /* (rrrrs-N53) second moment of mass of the links that turn with link 2 */
+        /* (rrrrs-N62) second moment of mass of the links that turn with link 2 */
         const real Sigma_2_rrrrs_xx = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_xx;
         const real Sigma_2_rrrrs_yy = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_yy;
         const real Sigma_2_rrrrs_zz = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_zz;
@@ -689,13 +712,16 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->J_3_rrrrs_xz[leg] = J_3_rrrrs_xz;
         model->J_3_rrrrs_yy[leg] = J_3_rrrrs_yy;
         model->J_3_rrrrs_yz[leg] = J_3_rrrrs_yz;
-        model->J_3_rrrrs_zz[leg] = J_3_rrrrs_zz;
         model->J_4_rrrrs_xx[leg] = J_4_rrrrs_xx;
         model->J_4_rrrrs_xy[leg] = J_4_rrrrs_xy;
         model->J_4_rrrrs_xz[leg] = J_4_rrrrs_xz;
         model->J_4_rrrrs_yy[leg] = J_4_rrrrs_yy;
         model->J_4_rrrrs_yz[leg] = J_4_rrrrs_yz;
         model->J_4_rrrrs_zz[leg] = J_4_rrrrs_zz;
+        model->Jc_1_rrrrs_t[leg] = Jc_1_rrrrs_t;
+        model->Jc_2_rrrrs_t_2[leg] = Jc_2_rrrrs_t_2;
+        model->Jc_2_rrrrs_t_3[leg] = Jc_2_rrrrs_t_3;
+        model->Jc_3_rrrrs_zz[leg] = Jc_3_rrrrs_zz;
         model->Kd_3_rrrrs_t[leg] = Kd_3_rrrrs_t;
         model->Kd_3_rrrrs_t_2[leg] = Kd_3_rrrrs_t_2;
         model->Sigma_2_rrrrs_xx[leg] = Sigma_2_rrrrs_xx;
@@ -712,6 +738,11 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->b_rrrrs_r0_z[leg] = b_rrrrs_r0_z;
         model->branch_1_rrrrs[leg] = branch_1_rrrrs;
         model->branch_3_rrrrs[leg] = branch_3_rrrrs;
+        model->d_G_rrrrs_t[leg] = d_G_rrrrs_t;
+        model->d_Gamma_3_rrrrs_t[leg] = d_Gamma_3_rrrrs_t;
+        model->d_Gamma_3_rrrrs_y[leg] = d_Gamma_3_rrrrs_y;
+        model->d_c_rrrrs_yy[leg] = d_c_rrrrs_yy;
+        model->d_phi_4_rrrrs_t[leg] = d_phi_4_rrrrs_t;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->g_r0_z[leg] = g_r0_z;
@@ -727,6 +758,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->h_4_rrrrs_x[leg] = h_4_rrrrs_x;
         model->h_4_rrrrs_y[leg] = h_4_rrrrs_y;
         model->h_4_rrrrs_z[leg] = h_4_rrrrs_z;
+        model->hc_2_rrrrs_t[leg] = hc_2_rrrrs_t;
         model->inv_rrrrs_platform_joint_offset_x[leg] = inv_rrrrs_platform_joint_offset_x;
         model->inv_size_rrrrs_t_7[leg] = inv_size_rrrrs_t_7;
         model->inv_size_rrrrs_t_8[leg] = inv_size_rrrrs_t_8;
@@ -839,6 +871,13 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real inv_size_rrrs_t_6 = 1/size_rrrs_t_2;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
         const real inv_size_rrrs_t_7 = 1/size_rrrs_t_3;
+        /* (rrrs-G3) inertia tensor of link 1 about the origin of link 1 */
+        const real J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
+        const real J_1_rrrs_t_2 = J_1_rrrs_t +
+            rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+            rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
+        const real J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t -
+            J_1_rrrs_t_2);
         /* (rrrs-G5) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_rrrs_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
         const real J_2_rrrs_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
@@ -856,10 +895,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
         const real J_2_rrrs_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_rrrs_t_3 -
             J_2_rrrs_t_4);
-        /* (rrrs-G4) first moment of link 2 about the origin of link 2 */
-        const real h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
-        const real h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
-        const real h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
         /* (rrrs-G6) connection point to the centre of mass of link 3 */
         const real rho_tip_3_rrrs_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x;
         /* (rrrs-G8) inertia tensor of link 3 about the connection point */
@@ -879,19 +914,31 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
         const real J_3_rrrs_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_rrrs_t_3 -
             J_3_rrrs_t_4);
-        /* (rrrs-V9) reciprocal vector 3 */
-        const real inv_rrrs_platform_joint_offset_x = 1/rrrs_platform_joint_offset_x;
+        /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_rrrs_zz = J_2_rrrs_zz + J_3_rrrs_zz;
+        /* (rrrs-G4) first moment of link 2 about the origin of link 2 */
+        const real h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
+        const real h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
+        const real h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
+        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrrs_t = R(0.5)*rrrs_joint2_offset_x*rrrs_link2_mass;
         /* (rrrs-G7) first moment of link 3 about the connection point */
         const real h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass;
         const real h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
         const real h_3_rrrs_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
-        /* (rrrs-G3) inertia tensor of link 1 about the origin of link 1 */
-        const real J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
-        const real J_1_rrrs_t_2 = J_1_rrrs_t +
-            rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-            rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
-        const real J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t -
-            J_1_rrrs_t_2);
+        /* (rrrs-V9) reciprocal vector 3 */
+        const real inv_rrrs_platform_joint_offset_x = 1/rrrs_platform_joint_offset_x;
+        /* (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrrs_t = J_3_rrrs_zz*inv_rrrs_platform_joint_offset_x;
+        const real d_Gamma_2_rrrs_y = d_Gamma_2_rrrs_t + h_3_rrrs_x;
+        /* (rrrs-N12) coefficient of the acceleration in: inertia force of link 3 from its turning about
+           its reference point */
+        const real d_phi_3_rrrs_t = h_3_rrrs_y*inv_rrrs_platform_joint_offset_x;
+        /* (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrrs_yy = -d_Gamma_2_rrrs_y*inv_rrrs_platform_joint_offset_x -
+            h_3_rrrs_x*inv_rrrs_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_7 = rrrs_link3_mass*rrrs_platform_point_x;
         const real h_star_t_8 = rrrs_link3_mass*rrrs_platform_point_y;
@@ -911,17 +958,17 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             gravity_z*rrrs_base_frame_zz;
         const real g_r0_z_2 = gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx +
             gravity_z*rrrs_base_frame_zx;
-        /* (rrrs-N24) half the trace of that inertia tensor */
+        /* (rrrs-N34) half the trace of that inertia tensor */
         const real trace_J_2_rrrs_rrrs = R(0.5)*J_2_rrrs_xx + R(0.5)*J_2_rrrs_yy +
             R(0.5)*J_2_rrrs_zz;
-        /* (rrrs-N25) second moment of mass of the links that turn with link 2 */
+        /* (rrrs-N35) second moment of mass of the links that turn with link 2 */
         const real Sigma_2_rrrs_xx = trace_J_2_rrrs_rrrs - J_2_rrrs_xx;
         const real Sigma_2_rrrs_yy = trace_J_2_rrrs_rrrs - J_2_rrrs_yy;
         const real Sigma_2_rrrs_zz = trace_J_2_rrrs_rrrs - J_2_rrrs_zz;
-        /* (rrrs-N16) half the trace of that inertia tensor */
+        /* (rrrs-N27) half the trace of that inertia tensor */
         const real trace_J_3_rrrs_rrrs = R(0.5)*J_3_rrrs_xx + R(0.5)*J_3_rrrs_yy +
             R(0.5)*J_3_rrrs_zz;
-        /* (rrrs-N17) second moment of mass of the links that turn with link 3 */
+        /* (rrrs-N28) second moment of mass of the links that turn with link 3 */
         const real Sigma_3_rrrs_xx = trace_J_3_rrrs_rrrs - J_3_rrrs_xx;
         const real Sigma_3_rrrs_yy = trace_J_3_rrrs_rrrs - J_3_rrrs_yy;
         const real Sigma_3_rrrs_zz = trace_J_3_rrrs_rrrs - J_3_rrrs_zz;
@@ -944,13 +991,14 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->J_2_rrrs_xz[leg] = J_2_rrrs_xz;
         model->J_2_rrrs_yy[leg] = J_2_rrrs_yy;
         model->J_2_rrrs_yz[leg] = J_2_rrrs_yz;
-        model->J_2_rrrs_zz[leg] = J_2_rrrs_zz;
         model->J_3_rrrs_xx[leg] = J_3_rrrs_xx;
         model->J_3_rrrs_xy[leg] = J_3_rrrs_xy;
         model->J_3_rrrs_xz[leg] = J_3_rrrs_xz;
         model->J_3_rrrs_yy[leg] = J_3_rrrs_yy;
         model->J_3_rrrs_yz[leg] = J_3_rrrs_yz;
         model->J_3_rrrs_zz[leg] = J_3_rrrs_zz;
+        model->Jc_1_rrrs_t[leg] = Jc_1_rrrs_t;
+        model->Jc_2_rrrs_zz[leg] = Jc_2_rrrs_zz;
         model->Kd_2_rrrs_t[leg] = Kd_2_rrrs_t;
         model->Kd_2_rrrs_t_2[leg] = Kd_2_rrrs_t_2;
         model->Sigma_2_rrrs_xx[leg] = Sigma_2_rrrs_xx;
@@ -963,6 +1011,10 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->b_rrrs_r0_y[leg] = b_rrrs_r0_y;
         model->branch_1_rrrs[leg] = branch_1_rrrs;
         model->branch_2_rrrs[leg] = branch_2_rrrs;
+        model->d_Gamma_2_rrrs_t[leg] = d_Gamma_2_rrrs_t;
+        model->d_Gamma_2_rrrs_y[leg] = d_Gamma_2_rrrs_y;
+        model->d_c_rrrs_yy[leg] = d_c_rrrs_yy;
+        model->d_phi_3_rrrs_t[leg] = d_phi_3_rrrs_t;
         model->g_r0_x_2[leg] = g_r0_x_2;
         model->g_r0_y_2[leg] = g_r0_y_2;
         model->g_r0_z_2[leg] = g_r0_z_2;
@@ -1056,7 +1108,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1606 mul, 1208 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- dynamics: 1547 mul, 1205 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -1263,13 +1315,16 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real J_3_rrrrs_xz = m->J_3_rrrrs_xz[i];
         const real J_3_rrrrs_yy = m->J_3_rrrrs_yy[i];
         const real J_3_rrrrs_yz = m->J_3_rrrrs_yz[i];
-        const real J_3_rrrrs_zz = m->J_3_rrrrs_zz[i];
         const real J_4_rrrrs_xx = m->J_4_rrrrs_xx[i];
         const real J_4_rrrrs_xy = m->J_4_rrrrs_xy[i];
         const real J_4_rrrrs_xz = m->J_4_rrrrs_xz[i];
         const real J_4_rrrrs_yy = m->J_4_rrrrs_yy[i];
         const real J_4_rrrrs_yz = m->J_4_rrrrs_yz[i];
         const real J_4_rrrrs_zz = m->J_4_rrrrs_zz[i];
+        const real Jc_1_rrrrs_t = m->Jc_1_rrrrs_t[i];
+        const real Jc_2_rrrrs_t_2 = m->Jc_2_rrrrs_t_2[i];
+        const real Jc_2_rrrrs_t_3 = m->Jc_2_rrrrs_t_3[i];
+        const real Jc_3_rrrrs_zz = m->Jc_3_rrrrs_zz[i];
         const real Kd_3_rrrrs_t = m->Kd_3_rrrrs_t[i];
         const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
         const real Sigma_2_rrrrs_xx = m->Sigma_2_rrrrs_xx[i];
@@ -1283,6 +1338,11 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real Sigma_4_rrrrs_zz = m->Sigma_4_rrrrs_zz[i];
         const real branch_1_rrrrs = m->branch_1_rrrrs[i];
         const real branch_3_rrrrs = m->branch_3_rrrrs[i];
+        const real d_G_rrrrs_t = m->d_G_rrrrs_t[i];
+        const real d_Gamma_3_rrrrs_t = m->d_Gamma_3_rrrrs_t[i];
+        const real d_Gamma_3_rrrrs_y = m->d_Gamma_3_rrrrs_y[i];
+        const real d_c_rrrrs_yy = m->d_c_rrrrs_yy[i];
+        const real d_phi_4_rrrrs_t = m->d_phi_4_rrrrs_t[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
@@ -1297,6 +1357,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real h_4_rrrrs_x = m->h_4_rrrrs_x[i];
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
+        const real hc_2_rrrrs_t = m->hc_2_rrrrs_t[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
         const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
         const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
@@ -1394,15 +1455,16 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-V5) velocity of the connection point per rate of joint 1 */
         const real e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs;
         const real e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs;
+        const real e_1_rrrrs_r3_x = c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs;
+        const real e_1_rrrrs_r3_y = c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs;
         /* (rrrrs-V4) from joint 1 to the connection point, along the links */
         const real r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t;
         const real r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t;
         const real r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs;
         const real r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs;
         /* (rrrrs-V5) velocity of the connection point per rate of joint 1 */
-        const real v_1_rrrrs_z = (c_4_rrrrs*e_1_rrrrs_r2_x -
-            e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
-            (c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x -
+        const real v_1_rrrrs_z = e_1_rrrrs_r3_x*(c_4_rrrrs*r_1_rrrrs_r2_y +
+            r_1_rrrrs_r2_x*s_4_rrrrs) - e_1_rrrrs_r3_y*(c_4_rrrrs*r_1_rrrrs_r2_x -
             r_1_rrrrs_r2_y*s_4_rrrrs);
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
@@ -1442,86 +1504,93 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real axis_x_rrrrs_axes4_z =
             axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x;
+        /* (rrrrs-G10) inertia tensor of link 4 about the connection point */
+        const real J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs;
+        const real _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs;
+        const real J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs;
+        const real _x_2 = J_4_rrrrs_t_2 + J_4_rrrrs_yy*s_4_rrrrs;
+        const real _x_3 = J_4_rrrrs_xz*c_4_rrrrs + J_4_rrrrs_yz*s_4_rrrrs;
+        const real _y = J_4_rrrrs_yz*c_4_rrrrs - J_4_rrrrs_xz*s_4_rrrrs;
+        /* (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3 */
+        const real Jc_3_rrrrs_xx = J_3_rrrrs_xx + _x*c_4_rrrrs + _x_2*s_4_rrrrs;
+        const real Jc_3_rrrrs_xy = J_3_rrrrs_xy + _x_2*c_4_rrrrs - _x*s_4_rrrrs;
+        const real Jc_3_rrrrs_xz = J_3_rrrrs_xz + _x_3;
+        const real Jc_3_rrrrs_yy = J_3_rrrrs_yy + c_4_rrrrs*(J_4_rrrrs_yy*c_4_rrrrs - J_4_rrrrs_t)
+            - s_4_rrrrs*(J_4_rrrrs_t_2 - J_4_rrrrs_xx*s_4_rrrrs);
+        const real Jc_3_rrrrs_yz = J_3_rrrrs_yz + _y;
+        const real Jc_3_rrrrs_t = Jc_3_rrrrs_xy*s_3_rrrrs;
+        const real _x_4 = Jc_3_rrrrs_xx*c_3_rrrrs - Jc_3_rrrrs_t;
+        const real Jc_3_rrrrs_t_2 = Jc_3_rrrrs_xy*c_3_rrrrs;
+        const real _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs;
+        const real _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs;
+        const real _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs;
+        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
+        const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
+        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x);
+        const real Jc_2_rrrrs_t_4 = 2*Jc_2_rrrrs_t;
+        const real Jc_2_rrrrs_xy = J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs -
+            h_3_rrrrs_r0_y*rrrrs_joint3_offset_x;
+        /* (rrrrs-N33) first moment of the links from 2 outwards */
+        const real hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t;
+        const real hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y;
+        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
+        const real _y_3 = s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs -
+            2*Jc_2_rrrrs_t - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) -
+            c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs - c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 +
+            c_3_rrrrs*(Jc_3_rrrrs_t + Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 +
+            Jc_3_rrrrs_xx*s_3_rrrrs)));
+        /* (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrrrs_t_2 = rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs -
+            c_2_rrrrs_t*hc_2_rrrrs_y);
+        /* (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit */
+        const real L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x;
+        /* (rrrrs-V9) reciprocal vector 1 */
         const real inv_v_1_rrrrs_z = 1/v_1_rrrrs_z;
-        /* (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_rrrrs_t = inv_v_1_rrrrs_z*s_2_rrrrs;
-        const real d_alpha_1_rrrrs_t_2 = c_2_rrrrs_t*inv_v_1_rrrrs_z;
-        /* (rrrrs-A50) coefficient of the acceleration in: acceleration of the origin of joint 3 */
-        const real d_a_o3_rrrrs_t = d_alpha_1_rrrrs_t_2*rrrrs_joint3_offset_x;
         /* (rrrrs-V10) reciprocal vector 2 */
         const real inv_r_3_rrrrs_r0_y = 1/r_3_rrrrs_r0_y;
-        /* (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real _x = c_3_rrrrs*d_alpha_1_rrrrs_t - d_alpha_1_rrrrs_t_2*s_3_rrrrs;
-        const real _y = -c_3_rrrrs*d_alpha_1_rrrrs_t_2 - d_alpha_1_rrrrs_t*s_3_rrrrs;
-        /* (rrrrs-V10) reciprocal vector 2 */
-        const real w_3_rrrrs_t = c_4_rrrrs*inv_r_3_rrrrs_r0_y;
-        const real w_3_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*s_4_rrrrs;
         /* (rrrrs-V11) reciprocal vector 3 */
         const real w_4_rrrrs_t =
             inv_r_3_rrrrs_r0_y*inv_rrrrs_platform_joint_offset_x*r_3_rrrrs_r0_x;
-        /* (rrrrs-A34) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real _x_2 = _x*c_4_rrrrs - _y*s_4_rrrrs;
-        const real _y_2 = _x*s_4_rrrrs + _y*c_4_rrrrs;
-        /* (rrrrs-A40) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d_alpha_4_rrrrs_zx = w_4_rrrrs_t - c_4_rrrrs*w_3_rrrrs_t -
-            s_4_rrrrs*w_3_rrrrs_t_2;
-        const real d_alpha_4_rrrrs_zy = inv_rrrrs_platform_joint_offset_x +
-            c_4_rrrrs*w_3_rrrrs_t_2 - s_4_rrrrs*w_3_rrrrs_t;
-        /* (rrrrs-N31) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d_mu_4_rrrrs_t = J_4_rrrrs_xz*_x_2 + J_4_rrrrs_yz*_y_2;
-        const real d_mu_4_rrrrs_xz = h_4_rrrrs_y + J_4_rrrrs_xx*_x_2 + J_4_rrrrs_xy*_y_2;
-        const real d_mu_4_rrrrs_yz = J_4_rrrrs_xy*_x_2 + J_4_rrrrs_yy*_y_2 - h_4_rrrrs_x;
-        const real d_mu_4_rrrrs_zx = J_4_rrrrs_zz*d_alpha_4_rrrrs_zx - h_4_rrrrs_y;
-        const real d_mu_4_rrrrs_zy = h_4_rrrrs_x + J_4_rrrrs_zz*d_alpha_4_rrrrs_zy;
-        /* (rrrrs-N45) coefficient of the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
-        const real d_N_3_rrrrs_xz = J_3_rrrrs_xx*_x + J_3_rrrrs_xy*_y + c_4_rrrrs*d_mu_4_rrrrs_xz
-            + d_a_o3_rrrrs_t*h_3_rrrrs_y + d_mu_4_rrrrs_yz*s_4_rrrrs;
-        const real d_N_3_rrrrs_yz = J_3_rrrrs_xy*_x + J_3_rrrrs_yy*_y + c_4_rrrrs*d_mu_4_rrrrs_yz
-            - d_a_o3_rrrrs_t*h_3_rrrrs_x - d_mu_4_rrrrs_xz*s_4_rrrrs;
-        const real d_N_3_rrrrs_zx = c_4_rrrrs*d_mu_4_rrrrs_zx + d_mu_4_rrrrs_zy*s_4_rrrrs -
-            J_3_rrrrs_zz*w_3_rrrrs_t;
-        const real d_N_3_rrrrs_zy = J_3_rrrrs_zz*w_3_rrrrs_t_2 + c_4_rrrrs*d_mu_4_rrrrs_zy -
-            d_mu_4_rrrrs_zx*s_4_rrrrs;
-        const real d_N_3_rrrrs_zz = d_mu_4_rrrrs_t + J_3_rrrrs_xz*_x + J_3_rrrrs_yz*_y;
-        /* (rrrrs-N20) coefficient of the acceleration in: inertia force of link 3 less its weight */
-        const real _y_3 = h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t - c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t;
-        const real _y_4 = c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t_2 -
-            h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t_2;
-        /* (rrrrs-N59) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_rrrrs_zx = c_3_rrrrs*d_N_3_rrrrs_zx +
-            rrrrs_joint3_offset_x*(_y_3*c_3_rrrrs - _y_4*s_3_rrrrs) - d_N_3_rrrrs_zy*s_3_rrrrs;
-        const real d_N_2_rrrrs_zy = c_3_rrrrs*d_N_3_rrrrs_zy + d_N_3_rrrrs_zx*s_3_rrrrs +
-            rrrrs_joint3_offset_x*(_y_3*s_3_rrrrs + _y_4*c_3_rrrrs);
-        const real d_N_2_rrrrs_t = c_2_rrrrs_t*(J_2_rrrrs_xy*d_alpha_1_rrrrs_t +
-            c_3_rrrrs*d_N_3_rrrrs_yz + d_N_3_rrrrs_xz*s_3_rrrrs - J_2_rrrrs_yy*d_alpha_1_rrrrs_t_2
-            - rrrrs_joint3_offset_x*(_x*h_3_rrrrs_y + d_a_o3_rrrrs_t*rrrrs_link3_mass -
-            _y*h_3_rrrrs_x));
-        /* (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the
+        /* (rrrrs-N80) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real d_Gamma_1_rrrrs_z = e_1_rrrrs_r3_x*h_4_rrrrs_y + inv_v_1_rrrrs_z*(J_1_rrrrs_xx
+            + _y_3) - e_1_rrrrs_r3_y*h_4_rrrrs_x;
+        /* (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real d_Gamma_3_rrrrs_t_2 = d_Gamma_3_rrrrs_t*r_3_rrrrs_r0_x;
+        const real d_Gamma_3_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(Jc_3_rrrrs_zz -
+            d_Gamma_3_rrrrs_t_2);
+        /* (rrrrs-N48) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real d_Gamma_4_rrrrs_t = inv_v_1_rrrrs_z*(s_2_rrrrs*(_x_3*c_3_rrrrs - _y*s_3_rrrrs)
+            - c_2_rrrrs_t*(_x_3*s_3_rrrrs + _y*c_3_rrrrs));
+        const real d_Gamma_4_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(J_4_rrrrs_zz -
+            d_Gamma_3_rrrrs_t_2);
+        /* (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_rrrrs_t = d_mu_4_rrrrs_zy*inv_rrrrs_platform_joint_offset_x;
-        const real d_G_rrrrs_t_2 = d_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x;
-        const real d_G_rrrrs_xx = d_mu_4_rrrrs_zx*w_4_rrrrs_t -
-            inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zx - d_N_3_rrrrs_zy*s_4_rrrrs);
-        const real d_G_rrrrs_xy = d_mu_4_rrrrs_zy*w_4_rrrrs_t -
-            inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zy + d_N_3_rrrrs_zx*s_4_rrrrs);
-        const real d_G_rrrrs_xz = d_mu_4_rrrrs_t*w_4_rrrrs_t - d_N_3_rrrrs_zz*inv_r_3_rrrrs_r0_y;
-        /* (rrrrs-N89) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_G_rrrrs_t_2 = d_Gamma_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x;
+        const real d_G_rrrrs_xx = d_Gamma_4_rrrrs_x*w_4_rrrrs_t -
+            d_Gamma_3_rrrrs_x*inv_r_3_rrrrs_r0_y;
+        const real d_G_rrrrs_xy = d_Gamma_3_rrrrs_y*w_4_rrrrs_t -
+            d_Gamma_3_rrrrs_y*inv_r_3_rrrrs_r0_y;
+        const real d_G_rrrrs_xz = d_Gamma_4_rrrrs_t*w_4_rrrrs_t -
+            inv_r_3_rrrrs_r0_y*inv_v_1_rrrrs_z*(_x_6*s_2_rrrrs - _y_2*c_2_rrrrs_t);
+        /* (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real d_alpha_4_rrrrs_t = e_1_rrrrs_r3_x*inv_v_1_rrrrs_z;
+        const real d_alpha_4_rrrrs_t_2 = e_1_rrrrs_r3_y*inv_v_1_rrrrs_z;
+        /* (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrrrs_xx = d_alpha_4_rrrrs_zx*h_4_rrrrs_y - d_G_rrrrs_xx;
-        const real d_c_rrrrs_xy = d_alpha_4_rrrrs_zy*h_4_rrrrs_y - d_G_rrrrs_xy;
-        const real d_c_rrrrs_xz = -d_G_rrrrs_xz - _y_2*h_4_rrrrs_z;
-        const real d_c_rrrrs_yz = _x_2*h_4_rrrrs_z - d_G_rrrrs_t_2;
-        const real d_c_rrrrs_zz = _y_2*h_4_rrrrs_x - _x_2*h_4_rrrrs_y -
-            inv_v_1_rrrrs_z*(J_1_rrrrs_xx*inv_v_1_rrrrs_z +
-            s_2_rrrrs*(J_2_rrrrs_xx*d_alpha_1_rrrrs_t + c_3_rrrrs*d_N_3_rrrrs_xz -
-            J_2_rrrrs_xy*d_alpha_1_rrrrs_t_2 - d_N_3_rrrrs_yz*s_3_rrrrs) - d_N_2_rrrrs_t);
-        /* (rrrrs-N91) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrrrs_t = d_G_rrrrs_t + d_c_rrrrs_xx + d_alpha_4_rrrrs_zy*h_4_rrrrs_x;
+        const real d_c_rrrrs_xx = h_4_rrrrs_y*(w_4_rrrrs_t - inv_r_3_rrrrs_r0_y) - d_G_rrrrs_xx;
+        const real d_c_rrrrs_xy = d_phi_4_rrrrs_t - d_G_rrrrs_xy;
+        const real d_c_rrrrs_xz = -d_G_rrrrs_xz - d_alpha_4_rrrrs_t_2*h_4_rrrrs_z;
+        const real d_c_rrrrs_yz = d_alpha_4_rrrrs_t*h_4_rrrrs_z - d_G_rrrrs_t_2;
+        /* (rrrrs-N90) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrrrs_t = d_c_rrrrs_xx - d_c_rrrrs_yy;
         const real Q_rrrrs_t_2 = R(0.5)*Q_rrrrs_t;
-        const real Q_rrrrs_t_3 = d_c_rrrrs_xx - d_c_rrrrs_zz;
+        const real Q_rrrrs_t_3 = d_c_rrrrs_xx + d_Gamma_1_rrrrs_z*inv_v_1_rrrrs_z +
+            d_alpha_4_rrrrs_t*h_4_rrrrs_y - d_alpha_4_rrrrs_t_2*h_4_rrrrs_x;
         const real Q_rrrrs_t_4 = R(0.5)*Q_rrrrs_t_3;
         const real Q_rrrrs_t_5 = axis_x_rrrrs_axes4_x*d_c_rrrrs_xy +
             axis_z_rrrrs_axes4_in_base_x*d_c_rrrrs_yz - Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_x;
@@ -1652,6 +1721,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x;
         const real W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z;
+        const real W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3;
         const real W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z;
         const real W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z;
@@ -1660,40 +1730,28 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x;
         const real d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs;
         const real d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs;
-        const real bias_rrrrs_t_3 = omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y +
-            d_2_rrrrs_r2_x*s_4_rrrrs) - omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x -
-            d_2_rrrrs_r2_y*s_4_rrrrs);
-        const real bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x;
-        const real bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs;
-        const real d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs;
-        const real d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs;
-        const real bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs;
-        const real bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs;
-        const real bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x -
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x;
-        const real bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs;
-        const real bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_9*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_x = bias_rrrrs_t_13*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_y + bias_rrrrs_t_8*omega_3_rrrrs_r0_y -
-            bias_rrrrs_t_12*omega_3_rrrrs_z - bias_rrrrs_t_14*omega_4_rrrrs_z -
-            bias_rrrrs_t_15*omega_3_rrrrs_r0_y - bias_rrrrs_t_7*yd_2_rrrrs;
-        const real bias_rrrrs_y = bias_rrrrs_t_15*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_11*omega_3_rrrrs_z - bias_rrrrs_t_13*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_x - bias_rrrrs_t_6*yd_2_rrrrs -
-            bias_rrrrs_t_8*omega_3_rrrrs_r0_x;
-        const real bias_rrrrs_z = bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs -
-            beta_3_rrrrs_y*s_4_rrrrs) + bias_rrrrs_t_11*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_12*omega_3_rrrrs_r0_x + bias_rrrrs_t_14*omega_3_rrrrs_r0_x +
-            bias_rrrrs_t_6*omega_3_rrrrs_r0_y + bias_rrrrs_t_7*omega_3_rrrrs_r0_x +
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-            beta_4_rrrrs_y*rrrrs_platform_joint_offset_x;
+        const real d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs;
+        const real d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs;
+        const real bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x;
+        const real bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs;
+        const real d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs;
+        const real d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs;
+        const real bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x;
+        const real bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs;
+        const real bias_rrrrs_x = W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_y - W_4_rrrrs_t_2*d_2_rrrrs_r3_x -
+            W_4_rrrrs_xx*rrrrs_platform_joint_offset_x - bias_rrrrs_t_5*(W_3_rrrrs_t_3 +
+            W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 + W_4_rrrrs_t_2);
+        const real bias_rrrrs_y = W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_x + W_4_rrrrs_xy*rrrrs_platform_joint_offset_x -
+            W_4_rrrrs_t*d_2_rrrrs_r3_y - bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) -
+            d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 + W_4_rrrrs_t);
+        const real bias_rrrrs_z = bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z -
+            beta_3_rrrrs_r0_y) + bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs +
+            omega_3_rrrrs_r0_y*omega_3_rrrrs_z - beta_3_rrrrs_y*s_4_rrrrs) +
+            rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y) +
+            2*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+            2*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs;
         /* (rrrrs-A1) centripetal acceleration of the connection point */
         const real u_1_rrrrs_x = S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z;
         const real u_1_rrrrs_y = S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x;
@@ -1712,19 +1770,19 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-A15) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_3_rrrrs_o = inv_r_3_rrrrs_r0_y*rel_rrrrs_o_x;
         const real qdd_1_rrrrs_o = inv_v_1_rrrrs_z*rel_rrrrs_o_z;
-        /* (rrrrs-A25) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrrs-A23) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_rrrrs_o_t = qdd_1_rrrrs_o*s_2_rrrrs;
         const real alpha_1_rrrrs_o_t_2 = c_2_rrrrs_t*qdd_1_rrrrs_o;
-        /* (rrrrs-A30) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x;
         const real alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y;
-        /* (rrrrs-A32) acceleration tensor of link 2 */
+        /* (rrrrs-A29) acceleration tensor of link 2 */
         const real B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y;
         const real B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x;
-        /* (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        /* (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3 */
         const real a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3);
         const real a_o3_rrrrs_o_t_2 = W_2_rrrrs_xy*rrrrs_joint3_offset_x;
-        /* (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x;
         const real g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs;
@@ -1737,19 +1795,19 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real acc_3_rrrrs_o_y = a_o3_rrrrs_o_t*s_3_rrrrs - g_r4_y -
             a_o3_rrrrs_o_t_2*c_3_rrrrs;
         const real acc_3_rrrrs_o_z = B_2_rrrrs_o_zx*rrrrs_joint3_offset_x - g_r1_x;
-        /* (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_rrrrs_o_x = alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs -
             zeta_3_rrrrs_x;
         const real alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs -
             alpha_2_rrrrs_o_x*s_3_rrrrs;
-        /* (rrrrs-A38) acceleration tensor of link 3 */
+        /* (rrrrs-A33) acceleration tensor of link 3 */
         const real B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o;
         const real B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y;
         const real B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o;
         const real B_3_rrrrs_o_yz = W_3_rrrrs_yz - alpha_3_rrrrs_o_x;
         const real B_3_rrrrs_o_zx = W_3_rrrrs_xz - alpha_3_rrrrs_o_y;
         const real B_3_rrrrs_o_zy = W_3_rrrrs_yz + alpha_3_rrrrs_o_x;
-        /* (rrrrs-N43) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N54) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_rrrrs_o_x = B_3_rrrrs_o_yx*J_3_rrrrs_xz + B_3_rrrrs_o_zy*Sigma_3_rrrrs_yy
             + J_3_rrrrs_yz*(W_3_rrrrs_t_2 - W_3_rrrrs_t_3) + acc_3_rrrrs_o_z*h_3_rrrrs_y -
@@ -1763,26 +1821,26 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             + J_3_rrrrs_xy*(W_3_rrrrs_t - W_3_rrrrs_t_2) + acc_3_rrrrs_o_y*h_3_rrrrs_x -
             B_3_rrrrs_o_xy*Sigma_3_rrrrs_yy - B_3_rrrrs_o_yz*J_3_rrrrs_xz -
             acc_3_rrrrs_o_x*h_3_rrrrs_y;
-        /* (rrrrs-N24) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N16) remainder without the acceleration in: acceleration of the reference point of link
            4, less gravity */
         const real acc_4_rrrrs_o_x = u_1_rrrrs_tip_x + g_r4_y*s_4_rrrrs - c_4_rrrrs*g_r4_x;
         const real acc_4_rrrrs_o_y = u_1_rrrrs_tip_y - c_4_rrrrs*g_r4_y - g_r4_x*s_4_rrrrs;
         const real acc_4_rrrrs_o_z = u_1_rrrrs_tip_z - g_r1_x;
-        /* (rrrrs-A42) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 4 */
         const real alpha_4_rrrrs_o_x = alpha_3_rrrrs_o_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs
             - alpha_3_rrrrs_o_y*s_4_rrrrs;
         const real alpha_4_rrrrs_o_y = alpha_3_rrrrs_o_x*s_4_rrrrs + alpha_3_rrrrs_o_y*c_4_rrrrs -
             zeta_4_rrrrs_y;
         const real alpha_4_rrrrs_o_z = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y +
             qdd_3_rrrrs_o*r_3_rrrrs_r0_x) - qdd_3_rrrrs_o;
-        /* (rrrrs-A44) acceleration tensor of link 4 */
+        /* (rrrrs-A38) acceleration tensor of link 4 */
         const real B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z;
         const real B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y;
         const real B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z;
         const real B_4_rrrrs_o_yz = W_4_rrrrs_yz - alpha_4_rrrrs_o_x;
         const real B_4_rrrrs_o_zx = W_4_rrrrs_xz - alpha_4_rrrrs_o_y;
         const real B_4_rrrrs_o_zy = W_4_rrrrs_yz + alpha_4_rrrrs_o_x;
-        /* (rrrrs-N33) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
         const real mu_4_rrrrs_o_x = B_4_rrrrs_o_yx*J_4_rrrrs_xz + B_4_rrrrs_o_zy*Sigma_4_rrrrs_yy
             + J_4_rrrrs_yz*(W_4_rrrrs_t_2 - W_4_rrrrs_t_3) + acc_4_rrrrs_o_z*h_4_rrrrs_y -
@@ -1796,21 +1854,21 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             + J_4_rrrrs_xy*(W_4_rrrrs_t - W_4_rrrrs_t_2) + acc_4_rrrrs_o_y*h_4_rrrrs_x -
             B_4_rrrrs_o_xy*Sigma_4_rrrrs_yy - B_4_rrrrs_o_yz*J_4_rrrrs_xz -
             acc_4_rrrrs_o_x*h_4_rrrrs_y;
-        /* (rrrrs-N47) remainder without the acceleration in: moment about joint 3 of the links from 3
+        /* (rrrrs-N56) remainder without the acceleration in: moment about joint 3 of the links from 3
            outwards, the force at the connection point left out */
         const real N_3_rrrrs_o_x = mu_3_rrrrs_o_x + c_4_rrrrs*mu_4_rrrrs_o_x +
             mu_4_rrrrs_o_y*s_4_rrrrs;
         const real N_3_rrrrs_o_y = mu_3_rrrrs_o_y + c_4_rrrrs*mu_4_rrrrs_o_y -
             mu_4_rrrrs_o_x*s_4_rrrrs;
         const real N_3_rrrrs_o_z = mu_3_rrrrs_o_z + mu_4_rrrrs_o_z;
-        /* (rrrrs-N22) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (rrrrs-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
         const real f_3_rrrrs_o_x = B_3_rrrrs_o_xy*h_3_rrrrs_y + B_3_rrrrs_o_xz*h_3_rrrrs_z +
             acc_3_rrrrs_o_x*rrrrs_link3_mass - h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3);
         const real f_3_rrrrs_o_y = B_3_rrrrs_o_yx*h_3_rrrrs_x + B_3_rrrrs_o_yz*h_3_rrrrs_z +
             acc_3_rrrrs_o_y*rrrrs_link3_mass - h_3_rrrrs_y*(W_3_rrrrs_t + W_3_rrrrs_t_3);
         const real f_3_rrrrs_o_z = B_3_rrrrs_o_zx*h_3_rrrrs_x + B_3_rrrrs_o_zy*h_3_rrrrs_y +
             acc_3_rrrrs_o_z*rrrrs_link3_mass - h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2);
-        /* (rrrrs-N57) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N64) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrrrs_o_x = B_2_rrrrs_o_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2
             - W_2_rrrrs_t_3) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t + g_r3_y*h_2_rrrrs_z -
@@ -1821,7 +1879,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real mu_2_rrrrs_o_z = J_2_rrrrs_xy*(W_2_rrrrs_t - W_2_rrrrs_t_2) +
             J_2_rrrrs_xz*alpha_1_rrrrs_o_t + Sigma_2_rrrrs_yy*W_2_rrrrs_xy + g_r3_x*h_2_rrrrs_y -
             J_2_rrrrs_yz*alpha_1_rrrrs_o_t_2 - Sigma_2_rrrrs_xx*W_2_rrrrs_xy - g_r3_y*h_2_rrrrs_x;
-        /* (rrrrs-N61) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (rrrrs-N66) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_rrrrs_o_x = mu_2_rrrrs_o_x + N_3_rrrrs_o_x*c_3_rrrrs -
             N_3_rrrrs_o_y*s_3_rrrrs;
@@ -1829,29 +1887,29 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             N_3_rrrrs_o_y*c_3_rrrrs - f_3_rrrrs_o_z*rrrrs_joint3_offset_x;
         const real N_2_rrrrs_o_z = N_3_rrrrs_o_z + mu_2_rrrrs_o_z +
             rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_o_y + f_3_rrrrs_o_x*s_3_rrrrs);
-        /* (rrrrs-N75) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N76) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrrrs_o_z = J_1_rrrrs_xx*qdd_1_rrrrs_o - g_r1_x*h_1_rrrrs_y -
             g_r1_y*h_1_rrrrs_z;
-        /* (rrrrs-N79) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrrrs-N78) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrrrs_o_z = mu_1_rrrrs_o_z + N_2_rrrrs_o_x*s_2_rrrrs -
             N_2_rrrrs_o_y*c_2_rrrrs_t;
-        /* (rrrrs-N87) remainder without the acceleration in: force at the connection point that balances
+        /* (rrrrs-N86) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrrrs_o_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_o_z;
         const real G_rrrrs_o_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_o_t*r_3_rrrrs_r0_x -
             N_3_rrrrs_o_z);
-        /* (rrrrs-N90) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrrrs-N89) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrrrs_o_x = h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - G_rrrrs_o_t_2 -
+        const real c_rrrrs_o_x = W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_o_t_2 -
             B_4_rrrrs_o_xy*h_4_rrrrs_y - B_4_rrrrs_o_xz*h_4_rrrrs_z;
         const real c_rrrrs_o_y = h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_o_t -
             B_4_rrrrs_o_yx*h_4_rrrrs_x - B_4_rrrrs_o_yz*h_4_rrrrs_z;
         const real c_rrrrs_o_z = h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) -
             B_4_rrrrs_o_zx*h_4_rrrrs_x - B_4_rrrrs_o_zy*h_4_rrrrs_y -
             N_1_rrrrs_o_z*inv_v_1_rrrrs_z;
-        /* (rrrrs-N92) velocity and gravity terms of the leg force */
+        /* (rrrrs-N91) velocity and gravity terms of the leg force */
         const real U_rrrrs_in_base_x = -axis_x_rrrrs_axes4_x*c_rrrrs_o_x -
             axis_y_rrrrs_axes4_in_base_x*c_rrrrs_o_y - axis_z_rrrrs_axes4_in_base_x*c_rrrrs_o_z;
         const real U_rrrrs_in_base_y = -axis_x_rrrrs_axes4_y*c_rrrrs_o_x -
@@ -1865,25 +1923,23 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             U_rrrrs_in_base_z*q_rrrrs_in_base_x;
         const real Z_a_t_3 = U_rrrrs_in_base_y*q_rrrrs_in_base_x -
             U_rrrrs_in_base_x*q_rrrrs_in_base_y;
-        /* (rrrrs-N97) remainder without the acceleration in: inertia and weight of the leg along the
+        /* (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the
            extra freedom of joint 2 */
         const real P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x;
         const real P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t;
-        /* (rrrrs-N67) coefficient of the acceleration in: moment about axis 2 of the distal links'
+        /* (rrrrs-N70) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real d_Gamma_2_rrrrs_r0_x = c_3_rrrrs*d_N_2_rrrrs_zx + d_N_2_rrrrs_zy*s_3_rrrrs;
-        const real d_Gamma_2_rrrrs_r0_y = c_3_rrrrs*d_N_2_rrrrs_zy - d_N_2_rrrrs_zx*s_3_rrrrs;
-        /* (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real d_Gamma_2_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(L_c3_2_rrrrs_z -
+            d_Gamma_3_rrrrs_t_2);
+        /* (rrrrs-N94) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 2 */
-        const real d_P_2_rrrrs_x = c_4_rrrrs*d_Gamma_2_rrrrs_r0_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
-            d_Gamma_2_rrrrs_r0_y*s_4_rrrrs -
-            d_mu_4_rrrrs_zx*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x;
-        const real d_P_2_rrrrs_y = c_4_rrrrs*d_Gamma_2_rrrrs_r0_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y +
-            d_Gamma_2_rrrrs_r0_x*s_4_rrrrs - d_G_rrrrs_t*r_2_rrrrs_r1_x;
-        const real d_P_2_rrrrs_z = d_N_3_rrrrs_zz + J_2_rrrrs_xz*d_alpha_1_rrrrs_t +
-            d_G_rrrrs_xz*r_2_rrrrs_r1_y + rrrrs_joint3_offset_x*(_y*h_3_rrrrs_z*s_3_rrrrs -
-            _x*c_3_rrrrs*h_3_rrrrs_z) - J_2_rrrrs_yz*d_alpha_1_rrrrs_t_2 -
-            d_G_rrrrs_t_2*r_2_rrrrs_r1_x;
+        const real d_P_2_rrrrs_x = d_Gamma_2_rrrrs_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
+            d_Gamma_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x;
+        const real d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y -
+            d_G_rrrrs_t*r_2_rrrrs_r1_x;
+        const real d_P_2_rrrrs_z = d_G_rrrrs_xz*r_2_rrrrs_r1_y +
+            inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 - Jc_2_rrrrs_t_3) -
+            c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x;
         const real d_P_2_rrrrs_in_base_x = axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x +
             axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
             axis_z_rrrrs_axes4_in_base_x*d_P_2_rrrrs_z;
@@ -1902,38 +1958,29 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             d_P_2_rrrrs_in_base_x*q_rrrrs_in_base_y;
         /* (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1 */
         const real d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y;
-        /* (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d1_alpha_3_rrrrs_z = 1 - d1_qdd_3_rrrrs;
-        /* (rrrrs-N42) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d1_mu_3_rrrrs_z = J_3_rrrrs_zz*d1_alpha_3_rrrrs_z + bias_rrrrs_t_4*h_3_rrrrs_x
-            - bias_rrrrs_t_5*h_3_rrrrs_y;
-        /* (rrrrs-A41) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d1_alpha_4_rrrrs_z = d1_alpha_3_rrrrs_z +
-            inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x - r_2_rrrrs_r1_x);
-        /* (rrrrs-N32) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d1_mu_4_rrrrs_t = J_4_rrrrs_zz*d1_alpha_4_rrrrs_z;
-        /* (rrrrs-N46) coefficient of the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
-        const real d1_N_3_rrrrs_z = d1_mu_3_rrrrs_z + d1_mu_4_rrrrs_t;
-        /* (rrrrs-N21) coefficient of the acceleration in: inertia force of link 3 less its weight */
-        const real d1_f_3_rrrrs_x = bias_rrrrs_t_5*rrrrs_link3_mass -
-            d1_alpha_3_rrrrs_z*h_3_rrrrs_y;
-        const real d1_f_3_rrrrs_y = bias_rrrrs_t_4*rrrrs_link3_mass +
-            d1_alpha_3_rrrrs_z*h_3_rrrrs_x;
-        /* (rrrrs-N60) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d1_N_2_rrrrs_z = J_2_rrrrs_zz + d1_N_3_rrrrs_z +
-            rrrrs_joint3_offset_x*(c_3_rrrrs*d1_f_3_rrrrs_y + d1_f_3_rrrrs_x*s_3_rrrrs);
-        /* (rrrrs-N86) coefficient of the acceleration in: force at the connection point that balances the
+        /* (rrrrs-N59) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real d1_Gamma_3_rrrrs_t =
+            J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
+            r_2_rrrrs_r1_x);
+        const real d1_Gamma_3_rrrrs = L_c3_2_rrrrs_z + d1_Gamma_3_rrrrs_t -
+            Jc_3_rrrrs_zz*d1_qdd_3_rrrrs;
+        /* (rrrrs-N49) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real d1_Gamma_4_rrrrs = J_4_rrrrs_zz + d1_Gamma_3_rrrrs_t -
+            J_4_rrrrs_zz*d1_qdd_3_rrrrs;
+        /* (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d1_G_rrrrs_t = d1_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x;
-        /* (rrrrs-N96) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real d1_G_rrrrs_t = d1_Gamma_4_rrrrs*inv_rrrrs_platform_joint_offset_x;
+        /* (rrrrs-N71) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real d1_Gamma_2_rrrrs = J_2_rrrrs_zz + Jc_2_rrrrs_t_4 + Jc_3_rrrrs_zz +
+            d1_Gamma_3_rrrrs_t - L_c3_2_rrrrs_z*d1_qdd_3_rrrrs;
+        /* (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 2 */
         const real d1_P_2_rrrrs_t = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x
-            - d1_N_3_rrrrs_z) - d1_G_rrrrs_t*r_2_rrrrs_r1_x;
-        const real d1_P_2_rrrrs = d1_N_2_rrrrs_z + d1_P_2_rrrrs_t;
+            - d1_Gamma_3_rrrrs) - d1_G_rrrrs_t*r_2_rrrrs_r1_x;
+        const real d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t;
         /* (rrrrs-V9) reciprocal vector 1 */
         const real w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z;
         const real w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z;
@@ -1946,16 +1993,16 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 -
             q_rrrrs_in_base_y*w_1_rrrrs_t_3;
         /* (rrrrs-V10) reciprocal vector 2 */
-        const real w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y;
-        const real w_3_rrrrs_t_4 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y;
-        const real w_3_rrrrs_t_5 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y;
+        const real w_3_rrrrs_t = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y;
+        const real w_3_rrrrs_t_2 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y;
+        const real w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y;
         /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_4 -
-            q_rrrrs_in_base_y*w_3_rrrrs_t_5;
-        const real H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_5 -
-            q_rrrrs_in_base_z*w_3_rrrrs_t_3;
-        const real H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t_3 -
-            q_rrrrs_in_base_x*w_3_rrrrs_t_4;
+        const real H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 -
+            q_rrrrs_in_base_y*w_3_rrrrs_t_3;
+        const real H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 -
+            q_rrrrs_in_base_z*w_3_rrrrs_t;
+        const real H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t -
+            q_rrrrs_in_base_x*w_3_rrrrs_t_2;
         o->sum[0][k] = Q_rrrrs_t_12;  /* total_rrrrs_xx */
         o->sum[1][k] = Q_rrrrs_t_13;  /* total_rrrrs_xy */
         o->sum[2][k] = Q_rrrrs_t_14;  /* total_rrrrs_xz */
@@ -2004,9 +2051,9 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         o->entry[18][k] = H_a_1_rrrrs_y;
         o->entry[19][k] = H_a_1_rrrrs_z;
         o->entry[20][k] = 1;
-        o->entry[21][k] = -w_3_rrrrs_t_3;
-        o->entry[22][k] = -w_3_rrrrs_t_4;
-        o->entry[23][k] = -w_3_rrrrs_t_5;
+        o->entry[21][k] = -w_3_rrrrs_t;
+        o->entry[22][k] = -w_3_rrrrs_t_2;
+        o->entry[23][k] = -w_3_rrrrs_t_3;
         o->entry[24][k] = H_a_3_rrrrs_x;
         o->entry[25][k] = H_a_3_rrrrs_y;
         o->entry[26][k] = H_a_3_rrrrs_z;
@@ -2086,13 +2133,14 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real J_2_rrrs_xz = m->J_2_rrrs_xz[i];
         const real J_2_rrrs_yy = m->J_2_rrrs_yy[i];
         const real J_2_rrrs_yz = m->J_2_rrrs_yz[i];
-        const real J_2_rrrs_zz = m->J_2_rrrs_zz[i];
         const real J_3_rrrs_xx = m->J_3_rrrs_xx[i];
         const real J_3_rrrs_xy = m->J_3_rrrs_xy[i];
         const real J_3_rrrs_xz = m->J_3_rrrs_xz[i];
         const real J_3_rrrs_yy = m->J_3_rrrs_yy[i];
         const real J_3_rrrs_yz = m->J_3_rrrs_yz[i];
         const real J_3_rrrs_zz = m->J_3_rrrs_zz[i];
+        const real Jc_1_rrrs_t = m->Jc_1_rrrs_t[i];
+        const real Jc_2_rrrs_zz = m->Jc_2_rrrs_zz[i];
         const real Kd_2_rrrs_t = m->Kd_2_rrrs_t[i];
         const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
         const real Sigma_2_rrrs_xx = m->Sigma_2_rrrs_xx[i];
@@ -2103,6 +2151,10 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real Sigma_3_rrrs_zz = m->Sigma_3_rrrs_zz[i];
         const real branch_1_rrrs = m->branch_1_rrrs[i];
         const real branch_2_rrrs = m->branch_2_rrrs[i];
+        const real d_Gamma_2_rrrs_t = m->d_Gamma_2_rrrs_t[i];
+        const real d_Gamma_2_rrrs_y = m->d_Gamma_2_rrrs_y[i];
+        const real d_c_rrrs_yy = m->d_c_rrrs_yy[i];
+        const real d_phi_3_rrrs_t = m->d_phi_3_rrrs_t[i];
         const real g_r0_x_2 = m->g_r0_x_2[i];
         const real g_r0_y_2 = m->g_r0_y_2[i];
         const real g_r0_z_2 = m->g_r0_z_2[i];
@@ -2231,58 +2283,61 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
         const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
+        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        const real J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs;
+        const real _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs;
+        const real J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs;
+        const real _x_8 = J_3_rrrs_t_2 + J_3_rrrs_yy*s_3_rrrs;
+        const real _x_9 = J_3_rrrs_xz*c_3_rrrs + J_3_rrrs_yz*s_3_rrrs;
+        const real _y_4 = J_3_rrrs_yz*c_3_rrrs - J_3_rrrs_xz*s_3_rrrs;
+        /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_rrrs_xy = J_2_rrrs_xy + _x_8*c_3_rrrs - _x_7*s_3_rrrs;
+        const real _y_5 = -c_2_rrrs*(-Jc_2_rrrs_xy*s_2_rrrs - c_2_rrrs*(J_2_rrrs_yy +
+            c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs - J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 -
+            J_3_rrrs_xx*s_3_rrrs))) - s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx +
+            _x_7*c_3_rrrs + _x_8*s_3_rrrs));
+        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y -
+            h_2_rrrs_x*s_2_rrrs);
+        /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_rrrs_z = 1/v_1_rrrs_z;
         /* (rrrs-V8) reciprocal vector 2 */
         const real inv_r_2_rrrs_r0_y = 1/r_2_rrrs_r0_y;
-        /* (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_rrrs_t = inv_v_1_rrrs_z*s_2_rrrs;
-        const real d_alpha_1_rrrs_t_2 = c_2_rrrs*inv_v_1_rrrs_z;
-        /* (rrrs-V8) reciprocal vector 2 */
-        const real w_2_rrrs_t = c_3_rrrs*inv_r_2_rrrs_r0_y;
-        const real w_2_rrrs_t_2 = inv_r_2_rrrs_r0_y*s_3_rrrs;
         /* (rrrs-V9) reciprocal vector 3 */
         const real w_3_rrrs_t = inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*r_2_rrrs_r0_x;
-        /* (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = d_alpha_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*d_alpha_1_rrrs_t;
-        const real _y_5 = -c_3_rrrs*d_alpha_1_rrrs_t_2 - d_alpha_1_rrrs_t*s_3_rrrs;
-        /* (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_rrrs_zx = w_3_rrrs_t - c_3_rrrs*w_2_rrrs_t - s_3_rrrs*w_2_rrrs_t_2;
-        const real d_alpha_3_rrrs_zy = inv_rrrs_platform_joint_offset_x + c_3_rrrs*w_2_rrrs_t_2 -
-            s_3_rrrs*w_2_rrrs_t;
-        /* (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_rrrs_t = J_3_rrrs_xz*_x_3 + J_3_rrrs_yz*_y_5;
-        const real d_mu_3_rrrs_xz = h_3_rrrs_y + J_3_rrrs_xx*_x_3 + J_3_rrrs_xy*_y_5;
-        const real d_mu_3_rrrs_yz = J_3_rrrs_xy*_x_3 + J_3_rrrs_yy*_y_5 - h_3_rrrs_x;
-        const real d_mu_3_rrrs_zx = J_3_rrrs_zz*d_alpha_3_rrrs_zx - h_3_rrrs_y;
-        const real d_mu_3_rrrs_zy = h_3_rrrs_x + J_3_rrrs_zz*d_alpha_3_rrrs_zy;
-        /* (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_rrrs_zx = c_3_rrrs*d_mu_3_rrrs_zx + d_mu_3_rrrs_zy*s_3_rrrs -
-            J_2_rrrs_zz*w_2_rrrs_t;
-        const real d_N_2_rrrs_zy = J_2_rrrs_zz*w_2_rrrs_t_2 + c_3_rrrs*d_mu_3_rrrs_zy -
-            d_mu_3_rrrs_zx*s_3_rrrs;
-        const real _y_6 = -c_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_yz - J_2_rrrs_xy*d_alpha_1_rrrs_t -
-            J_2_rrrs_yy*d_alpha_1_rrrs_t_2 - d_mu_3_rrrs_xz*s_3_rrrs) -
-            s_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_xz + d_mu_3_rrrs_yz*s_3_rrrs -
-            J_2_rrrs_xx*d_alpha_1_rrrs_t - J_2_rrrs_xy*d_alpha_1_rrrs_t_2);
-        /* (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrrs_z = e_1_rrrs_r2_x*h_3_rrrs_y + inv_v_1_rrrs_z*(J_1_rrrs_xx +
+            _y_5) - e_1_rrrs_r2_y*h_3_rrrs_x;
+        /* (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrrs_t_2 = d_Gamma_2_rrrs_t*r_2_rrrs_r0_x;
+        const real d_Gamma_2_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(Jc_2_rrrs_zz -
+            d_Gamma_2_rrrs_t_2);
+        /* (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_rrrs_t = inv_v_1_rrrs_z*(-_x_9*s_2_rrrs - _y_4*c_2_rrrs);
+        const real d_Gamma_3_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(J_3_rrrs_zz -
+            d_Gamma_2_rrrs_t_2);
+        /* (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_rrrs_t = e_1_rrrs_r2_x*inv_v_1_rrrs_z;
+        const real d_alpha_3_rrrs_t_2 = e_1_rrrs_r2_y*inv_v_1_rrrs_z;
+        /* (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrrs_xx = d_alpha_3_rrrs_zx*h_3_rrrs_y +
-            inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zx - d_N_2_rrrs_zy*s_3_rrrs) -
-            d_mu_3_rrrs_zx*w_3_rrrs_t;
-        const real d_c_rrrs_xy = d_alpha_3_rrrs_zy*h_3_rrrs_y +
-            inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zy + d_N_2_rrrs_zx*s_3_rrrs) -
-            d_mu_3_rrrs_zy*w_3_rrrs_t;
-        const real d_c_rrrs_xz = inv_r_2_rrrs_r0_y*(d_mu_3_rrrs_t - J_2_rrrs_xz*d_alpha_1_rrrs_t -
-            J_2_rrrs_yz*d_alpha_1_rrrs_t_2) - _y_5*h_3_rrrs_z - d_mu_3_rrrs_t*w_3_rrrs_t;
-        const real d_c_rrrs_yz = _x_3*h_3_rrrs_z - d_mu_3_rrrs_t*inv_rrrs_platform_joint_offset_x;
-        /* (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrrs_t = d_c_rrrs_xx + d_alpha_3_rrrs_zy*h_3_rrrs_x +
-            d_mu_3_rrrs_zy*inv_rrrs_platform_joint_offset_x;
+        const real d_c_rrrs_xx = d_Gamma_2_rrrs_x*inv_r_2_rrrs_r0_y + h_3_rrrs_y*(w_3_rrrs_t -
+            inv_r_2_rrrs_r0_y) - d_Gamma_3_rrrs_x*w_3_rrrs_t;
+        const real d_c_rrrs_xy = d_phi_3_rrrs_t + d_Gamma_2_rrrs_y*inv_r_2_rrrs_r0_y -
+            d_Gamma_2_rrrs_y*w_3_rrrs_t;
+        const real d_c_rrrs_xz = inv_r_2_rrrs_r0_y*inv_v_1_rrrs_z*(-c_2_rrrs*(J_2_rrrs_yz + _y_4)
+            - s_2_rrrs*(J_2_rrrs_xz + _x_9)) - d_Gamma_3_rrrs_t*w_3_rrrs_t -
+            d_alpha_3_rrrs_t_2*h_3_rrrs_z;
+        const real d_c_rrrs_yz = d_alpha_3_rrrs_t*h_3_rrrs_z -
+            d_Gamma_3_rrrs_t*inv_rrrs_platform_joint_offset_x;
+        /* (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrrs_t = d_c_rrrs_xx - d_c_rrrs_yy;
         const real Q_rrrs_t_2 = R(0.5)*Q_rrrs_t;
-        const real Q_rrrs_t_3 = d_c_rrrs_xx + _x_3*h_3_rrrs_y + inv_v_1_rrrs_z*(_y_6 +
-            J_1_rrrs_xx*inv_v_1_rrrs_z) - _y_5*h_3_rrrs_x;
+        const real Q_rrrs_t_3 = d_c_rrrs_xx + d_Gamma_1_rrrs_z*inv_v_1_rrrs_z +
+            d_alpha_3_rrrs_t*h_3_rrrs_y - d_alpha_3_rrrs_t_2*h_3_rrrs_x;
         const real Q_rrrs_t_4 = R(0.5)*Q_rrrs_t_3;
         const real Q_rrrs_t_5 = axis_x_rrrs_axes3_x*d_c_rrrs_xy +
             axis_z_rrrs_axes3_in_base_x*d_c_rrrs_yz - Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_x;
@@ -2427,18 +2482,18 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs;
         const real g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs;
         const real g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2;
-        /* (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_rrrs_o_t = qdd_1_rrrs_o*s_2_rrrs;
         const real alpha_1_rrrs_o_t_2 = c_2_rrrs*qdd_1_rrrs_o;
-        /* (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t;
         const real alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y;
-        /* (rrrs-A25) acceleration tensor of link 2 */
+        /* (rrrs-A23) acceleration tensor of link 2 */
         const real B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o;
         const real B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o;
         const real B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y;
         const real B_2_rrrs_o_zy = alpha_2_rrrs_o_x + zeta_2_rrrs_x;
-        /* (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrrs_o_x = B_2_rrrs_o_yx*J_2_rrrs_xz + B_2_rrrs_o_zy*Sigma_2_rrrs_yy +
             J_2_rrrs_yz*(W_2_rrrs_t_2 - W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z -
@@ -2449,26 +2504,26 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real mu_2_rrrs_o_z = B_2_rrrs_o_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t -
             W_2_rrrs_t_2) + g_r3_x_2*h_2_rrrs_y - B_2_rrrs_o_xy*Sigma_2_rrrs_yy -
             J_2_rrrs_xz*alpha_1_rrrs_o_t - J_2_rrrs_yz*alpha_1_rrrs_o_t_2 - g_r3_y_2*h_2_rrrs_x;
-        /* (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_rrrs_o_x = u_1_rrrs_tip_x + g_r3_y_2*s_3_rrrs - c_3_rrrs*g_r3_x_2;
         const real acc_3_rrrs_o_y = u_1_rrrs_tip_y - c_3_rrrs*g_r3_y_2 - g_r3_x_2*s_3_rrrs;
         const real acc_3_rrrs_o_z = u_1_rrrs_tip_z - g_r1_x_2;
-        /* (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_rrrs_o_x = alpha_2_rrrs_o_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs -
             alpha_2_rrrs_o_y*s_3_rrrs;
         const real alpha_3_rrrs_o_y = alpha_2_rrrs_o_x*s_3_rrrs + alpha_2_rrrs_o_y*c_3_rrrs -
             zeta_3_rrrs_y;
         const real alpha_3_rrrs_o_z = inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y +
             qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o;
-        /* (rrrs-A30) acceleration tensor of link 3 */
+        /* (rrrs-A28) acceleration tensor of link 3 */
         const real B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z;
         const real B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y;
         const real B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z;
         const real B_3_rrrs_o_yz = W_3_rrrs_yz - alpha_3_rrrs_o_x;
         const real B_3_rrrs_o_zx = W_3_rrrs_xz - alpha_3_rrrs_o_y;
         const real B_3_rrrs_o_zy = W_3_rrrs_yz + alpha_3_rrrs_o_x;
-        /* (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_rrrs_o_x = B_3_rrrs_o_yx*J_3_rrrs_xz + B_3_rrrs_o_zy*Sigma_3_rrrs_yy +
             J_3_rrrs_yz*(W_3_rrrs_t_2 - W_3_rrrs_t_3) + acc_3_rrrs_o_z*h_3_rrrs_y -
@@ -2479,22 +2534,22 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real mu_3_rrrs_o_z = B_3_rrrs_o_xz*J_3_rrrs_yz + B_3_rrrs_o_yx*Sigma_3_rrrs_xx +
             J_3_rrrs_xy*(W_3_rrrs_t - W_3_rrrs_t_2) + acc_3_rrrs_o_y*h_3_rrrs_x -
             B_3_rrrs_o_xy*Sigma_3_rrrs_yy - B_3_rrrs_o_yz*J_3_rrrs_xz - acc_3_rrrs_o_x*h_3_rrrs_y;
-        /* (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_rrrs_o_x = mu_2_rrrs_o_x + c_3_rrrs*mu_3_rrrs_o_x + mu_3_rrrs_o_y*s_3_rrrs;
         const real N_2_rrrs_o_y = mu_2_rrrs_o_y + c_3_rrrs*mu_3_rrrs_o_y - mu_3_rrrs_o_x*s_3_rrrs;
         const real N_2_rrrs_o_z = mu_2_rrrs_o_z + mu_3_rrrs_o_z;
-        /* (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrrs_o_z = J_1_rrrs_xx*qdd_1_rrrs_o - g_r1_x_2*h_1_rrrs_y -
             g_r1_y_2*h_1_rrrs_z;
-        /* (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrrs_o_z = mu_1_rrrs_o_z - N_2_rrrs_o_x*s_2_rrrs - N_2_rrrs_o_y*c_2_rrrs;
-        /* (rrrs-N48) remainder without the acceleration in: force at the connection point that balances
+        /* (rrrs-N54) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrrs_o_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_o_z;
-        /* (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrrs_o_x = h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) -
             B_3_rrrs_o_xy*h_3_rrrs_y - B_3_rrrs_o_xz*h_3_rrrs_z -
@@ -2503,7 +2558,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             B_3_rrrs_o_yx*h_3_rrrs_x - B_3_rrrs_o_yz*h_3_rrrs_z;
         const real c_rrrs_o_z = h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_o_zx*h_3_rrrs_x
             - B_3_rrrs_o_zy*h_3_rrrs_y - N_1_rrrs_o_z*inv_v_1_rrrs_z;
-        /* (rrrs-N53) velocity and gravity terms of the leg force */
+        /* (rrrs-N59) velocity and gravity terms of the leg force */
         const real U_rrrs_in_base_x = -axis_x_rrrs_axes3_x*c_rrrs_o_x -
             axis_y_rrrs_axes3_in_base_x*c_rrrs_o_y - axis_z_rrrs_axes3_in_base_x*c_rrrs_o_z;
         const real U_rrrs_in_base_y = -axis_x_rrrs_axes3_y*c_rrrs_o_x -
@@ -2526,13 +2581,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5;
         const real H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3;
         /* (rrrs-V8) reciprocal vector 2 */
-        const real w_2_rrrs_t_3 = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y;
-        const real w_2_rrrs_t_4 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y;
-        const real w_2_rrrs_t_5 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y;
+        const real w_2_rrrs_t = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y;
+        const real w_2_rrrs_t_2 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y;
+        const real w_2_rrrs_t_3 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y;
         /* (M12) moment of the column's unit force about the platform origin */
-        const real H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_4 - q_rrrs_in_base_y*w_2_rrrs_t_5;
-        const real H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_5 - q_rrrs_in_base_z*w_2_rrrs_t_3;
-        const real H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t_3 - q_rrrs_in_base_x*w_2_rrrs_t_4;
+        const real H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3;
+        const real H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t;
+        const real H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2;
         o->sum[0][k] = Q_rrrs_t_12;  /* total_rrrs_xx */
         o->sum[1][k] = Q_rrrs_t_13;  /* total_rrrs_xy */
         o->sum[2][k] = Q_rrrs_t_14;  /* total_rrrs_xz */
@@ -2566,9 +2621,9 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         o->entry[3][k] = H_a_1_rrrs_x;
         o->entry[4][k] = H_a_1_rrrs_y;
         o->entry[5][k] = H_a_1_rrrs_z;
-        o->entry[6][k] = -w_2_rrrs_t_3;
-        o->entry[7][k] = -w_2_rrrs_t_4;
-        o->entry[8][k] = -w_2_rrrs_t_5;
+        o->entry[6][k] = -w_2_rrrs_t;
+        o->entry[7][k] = -w_2_rrrs_t_2;
+        o->entry[8][k] = -w_2_rrrs_t_3;
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
@@ -2819,7 +2874,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 49, w, code, H);
 }
 
-/* ---- M: 817 mul, 592 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- M: 768 mul, 589 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -2958,23 +3013,33 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real J_3_rrrrs_xz = m->J_3_rrrrs_xz[i];
         const real J_3_rrrrs_yy = m->J_3_rrrrs_yy[i];
         const real J_3_rrrrs_yz = m->J_3_rrrrs_yz[i];
-        const real J_3_rrrrs_zz = m->J_3_rrrrs_zz[i];
         const real J_4_rrrrs_xx = m->J_4_rrrrs_xx[i];
         const real J_4_rrrrs_xy = m->J_4_rrrrs_xy[i];
         const real J_4_rrrrs_xz = m->J_4_rrrrs_xz[i];
         const real J_4_rrrrs_yy = m->J_4_rrrrs_yy[i];
         const real J_4_rrrrs_yz = m->J_4_rrrrs_yz[i];
         const real J_4_rrrrs_zz = m->J_4_rrrrs_zz[i];
+        const real Jc_1_rrrrs_t = m->Jc_1_rrrrs_t[i];
+        const real Jc_2_rrrrs_t_2 = m->Jc_2_rrrrs_t_2[i];
+        const real Jc_2_rrrrs_t_3 = m->Jc_2_rrrrs_t_3[i];
+        const real Jc_3_rrrrs_zz = m->Jc_3_rrrrs_zz[i];
         const real Kd_3_rrrrs_t = m->Kd_3_rrrrs_t[i];
         const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
         const real branch_1_rrrrs = m->branch_1_rrrrs[i];
         const real branch_3_rrrrs = m->branch_3_rrrrs[i];
+        const real d_G_rrrrs_t = m->d_G_rrrrs_t[i];
+        const real d_Gamma_3_rrrrs_t = m->d_Gamma_3_rrrrs_t[i];
+        const real d_Gamma_3_rrrrs_y = m->d_Gamma_3_rrrrs_y[i];
+        const real d_c_rrrrs_yy = m->d_c_rrrrs_yy[i];
+        const real d_phi_4_rrrrs_t = m->d_phi_4_rrrrs_t[i];
+        const real h_2_rrrrs_x = m->h_2_rrrrs_x[i];
+        const real h_2_rrrrs_y = m->h_2_rrrrs_y[i];
         const real h_3_rrrrs_x = m->h_3_rrrrs_x[i];
         const real h_3_rrrrs_y = m->h_3_rrrrs_y[i];
-        const real h_3_rrrrs_z = m->h_3_rrrrs_z[i];
         const real h_4_rrrrs_x = m->h_4_rrrrs_x[i];
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
+        const real hc_2_rrrrs_t = m->hc_2_rrrrs_t[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
         const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
         const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
@@ -2994,7 +3059,6 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
         const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
         const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
-        const real rrrrs_link3_mass = m->rrrrs_link3_mass[i];
         const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
         const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
@@ -3071,15 +3135,16 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         /* (rrrrs-V5) velocity of the connection point per rate of joint 1 */
         const real e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs;
         const real e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs;
+        const real e_1_rrrrs_r3_x = c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs;
+        const real e_1_rrrrs_r3_y = c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs;
         /* (rrrrs-V4) from joint 1 to the connection point, along the links */
         const real r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t;
         const real r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t;
         const real r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs;
         const real r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs;
         /* (rrrrs-V5) velocity of the connection point per rate of joint 1 */
-        const real v_1_rrrrs_z = (c_4_rrrrs*e_1_rrrrs_r2_x -
-            e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
-            (c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x -
+        const real v_1_rrrrs_z = e_1_rrrrs_r3_x*(c_4_rrrrs*r_1_rrrrs_r2_y +
+            r_1_rrrrs_r2_x*s_4_rrrrs) - e_1_rrrrs_r3_y*(c_4_rrrrs*r_1_rrrrs_r2_x -
             r_1_rrrrs_r2_y*s_4_rrrrs);
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs;
@@ -3119,86 +3184,93 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real axis_x_rrrrs_axes4_z =
             axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x;
+        /* (rrrrs-G10) inertia tensor of link 4 about the connection point */
+        const real J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs;
+        const real _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs;
+        const real J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs;
+        const real _x_2 = J_4_rrrrs_t_2 + J_4_rrrrs_yy*s_4_rrrrs;
+        const real _x_3 = J_4_rrrrs_xz*c_4_rrrrs + J_4_rrrrs_yz*s_4_rrrrs;
+        const real _y = J_4_rrrrs_yz*c_4_rrrrs - J_4_rrrrs_xz*s_4_rrrrs;
+        /* (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3 */
+        const real Jc_3_rrrrs_xx = J_3_rrrrs_xx + _x*c_4_rrrrs + _x_2*s_4_rrrrs;
+        const real Jc_3_rrrrs_xy = J_3_rrrrs_xy + _x_2*c_4_rrrrs - _x*s_4_rrrrs;
+        const real Jc_3_rrrrs_xz = J_3_rrrrs_xz + _x_3;
+        const real Jc_3_rrrrs_yy = J_3_rrrrs_yy + c_4_rrrrs*(J_4_rrrrs_yy*c_4_rrrrs - J_4_rrrrs_t)
+            - s_4_rrrrs*(J_4_rrrrs_t_2 - J_4_rrrrs_xx*s_4_rrrrs);
+        const real Jc_3_rrrrs_yz = J_3_rrrrs_yz + _y;
+        const real Jc_3_rrrrs_t = Jc_3_rrrrs_xy*s_3_rrrrs;
+        const real _x_4 = Jc_3_rrrrs_xx*c_3_rrrrs - Jc_3_rrrrs_t;
+        const real Jc_3_rrrrs_t_2 = Jc_3_rrrrs_xy*c_3_rrrrs;
+        const real _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs;
+        const real _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs;
+        const real _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs;
+        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
+        const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
+        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x);
+        const real Jc_2_rrrrs_t_4 = 2*Jc_2_rrrrs_t;
+        const real Jc_2_rrrrs_xy = J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs -
+            h_3_rrrrs_r0_y*rrrrs_joint3_offset_x;
+        /* (rrrrs-N33) first moment of the links from 2 outwards */
+        const real hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t;
+        const real hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y;
+        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
+        const real _y_3 = s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs -
+            2*Jc_2_rrrrs_t - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) -
+            c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs - c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 +
+            c_3_rrrrs*(Jc_3_rrrrs_t + Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 +
+            Jc_3_rrrrs_xx*s_3_rrrrs)));
+        /* (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrrrs_t_2 = rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs -
+            c_2_rrrrs_t*hc_2_rrrrs_y);
+        /* (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit */
+        const real L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x;
+        /* (rrrrs-V9) reciprocal vector 1 */
         const real inv_v_1_rrrrs_z = 1/v_1_rrrrs_z;
-        /* (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_rrrrs_t = inv_v_1_rrrrs_z*s_2_rrrrs;
-        const real d_alpha_1_rrrrs_t_2 = c_2_rrrrs_t*inv_v_1_rrrrs_z;
-        /* (rrrrs-A50) coefficient of the acceleration in: acceleration of the origin of joint 3 */
-        const real d_a_o3_rrrrs_t = d_alpha_1_rrrrs_t_2*rrrrs_joint3_offset_x;
         /* (rrrrs-V10) reciprocal vector 2 */
         const real inv_r_3_rrrrs_r0_y = 1/r_3_rrrrs_r0_y;
-        /* (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real _x = c_3_rrrrs*d_alpha_1_rrrrs_t - d_alpha_1_rrrrs_t_2*s_3_rrrrs;
-        const real _y = -c_3_rrrrs*d_alpha_1_rrrrs_t_2 - d_alpha_1_rrrrs_t*s_3_rrrrs;
-        /* (rrrrs-V10) reciprocal vector 2 */
-        const real w_3_rrrrs_t = c_4_rrrrs*inv_r_3_rrrrs_r0_y;
-        const real w_3_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*s_4_rrrrs;
         /* (rrrrs-V11) reciprocal vector 3 */
         const real w_4_rrrrs_t =
             inv_r_3_rrrrs_r0_y*inv_rrrrs_platform_joint_offset_x*r_3_rrrrs_r0_x;
-        /* (rrrrs-A34) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real _x_2 = _x*c_4_rrrrs - _y*s_4_rrrrs;
-        const real _y_2 = _x*s_4_rrrrs + _y*c_4_rrrrs;
-        /* (rrrrs-A40) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d_alpha_4_rrrrs_zx = w_4_rrrrs_t - c_4_rrrrs*w_3_rrrrs_t -
-            s_4_rrrrs*w_3_rrrrs_t_2;
-        const real d_alpha_4_rrrrs_zy = inv_rrrrs_platform_joint_offset_x +
-            c_4_rrrrs*w_3_rrrrs_t_2 - s_4_rrrrs*w_3_rrrrs_t;
-        /* (rrrrs-N31) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d_mu_4_rrrrs_t = J_4_rrrrs_xz*_x_2 + J_4_rrrrs_yz*_y_2;
-        const real d_mu_4_rrrrs_xz = h_4_rrrrs_y + J_4_rrrrs_xx*_x_2 + J_4_rrrrs_xy*_y_2;
-        const real d_mu_4_rrrrs_yz = J_4_rrrrs_xy*_x_2 + J_4_rrrrs_yy*_y_2 - h_4_rrrrs_x;
-        const real d_mu_4_rrrrs_zx = J_4_rrrrs_zz*d_alpha_4_rrrrs_zx - h_4_rrrrs_y;
-        const real d_mu_4_rrrrs_zy = h_4_rrrrs_x + J_4_rrrrs_zz*d_alpha_4_rrrrs_zy;
-        /* (rrrrs-N45) coefficient of the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
-        const real d_N_3_rrrrs_xz = J_3_rrrrs_xx*_x + J_3_rrrrs_xy*_y + c_4_rrrrs*d_mu_4_rrrrs_xz
-            + d_a_o3_rrrrs_t*h_3_rrrrs_y + d_mu_4_rrrrs_yz*s_4_rrrrs;
-        const real d_N_3_rrrrs_yz = J_3_rrrrs_xy*_x + J_3_rrrrs_yy*_y + c_4_rrrrs*d_mu_4_rrrrs_yz
-            - d_a_o3_rrrrs_t*h_3_rrrrs_x - d_mu_4_rrrrs_xz*s_4_rrrrs;
-        const real d_N_3_rrrrs_zx = c_4_rrrrs*d_mu_4_rrrrs_zx + d_mu_4_rrrrs_zy*s_4_rrrrs -
-            J_3_rrrrs_zz*w_3_rrrrs_t;
-        const real d_N_3_rrrrs_zy = J_3_rrrrs_zz*w_3_rrrrs_t_2 + c_4_rrrrs*d_mu_4_rrrrs_zy -
-            d_mu_4_rrrrs_zx*s_4_rrrrs;
-        const real d_N_3_rrrrs_zz = d_mu_4_rrrrs_t + J_3_rrrrs_xz*_x + J_3_rrrrs_yz*_y;
-        /* (rrrrs-N20) coefficient of the acceleration in: inertia force of link 3 less its weight */
-        const real _y_3 = h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t - c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t;
-        const real _y_4 = c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t_2 -
-            h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t_2;
-        /* (rrrrs-N59) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_rrrrs_zx = c_3_rrrrs*d_N_3_rrrrs_zx +
-            rrrrs_joint3_offset_x*(_y_3*c_3_rrrrs - _y_4*s_3_rrrrs) - d_N_3_rrrrs_zy*s_3_rrrrs;
-        const real d_N_2_rrrrs_zy = c_3_rrrrs*d_N_3_rrrrs_zy + d_N_3_rrrrs_zx*s_3_rrrrs +
-            rrrrs_joint3_offset_x*(_y_3*s_3_rrrrs + _y_4*c_3_rrrrs);
-        const real d_N_2_rrrrs_t = c_2_rrrrs_t*(J_2_rrrrs_xy*d_alpha_1_rrrrs_t +
-            c_3_rrrrs*d_N_3_rrrrs_yz + d_N_3_rrrrs_xz*s_3_rrrrs - J_2_rrrrs_yy*d_alpha_1_rrrrs_t_2
-            - rrrrs_joint3_offset_x*(_x*h_3_rrrrs_y + d_a_o3_rrrrs_t*rrrrs_link3_mass -
-            _y*h_3_rrrrs_x));
-        /* (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the
+        /* (rrrrs-N80) coefficient of the acceleration in: moment about axis 1 of the distal links'
+           inertia and weight */
+        const real d_Gamma_1_rrrrs_z = e_1_rrrrs_r3_x*h_4_rrrrs_y + inv_v_1_rrrrs_z*(J_1_rrrrs_xx
+            + _y_3) - e_1_rrrrs_r3_y*h_4_rrrrs_x;
+        /* (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real d_Gamma_3_rrrrs_t_2 = d_Gamma_3_rrrrs_t*r_3_rrrrs_r0_x;
+        const real d_Gamma_3_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(Jc_3_rrrrs_zz -
+            d_Gamma_3_rrrrs_t_2);
+        /* (rrrrs-N48) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real d_Gamma_4_rrrrs_t = inv_v_1_rrrrs_z*(s_2_rrrrs*(_x_3*c_3_rrrrs - _y*s_3_rrrrs)
+            - c_2_rrrrs_t*(_x_3*s_3_rrrrs + _y*c_3_rrrrs));
+        const real d_Gamma_4_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(J_4_rrrrs_zz -
+            d_Gamma_3_rrrrs_t_2);
+        /* (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_rrrrs_t = d_mu_4_rrrrs_zy*inv_rrrrs_platform_joint_offset_x;
-        const real d_G_rrrrs_t_2 = d_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x;
-        const real d_G_rrrrs_xx = d_mu_4_rrrrs_zx*w_4_rrrrs_t -
-            inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zx - d_N_3_rrrrs_zy*s_4_rrrrs);
-        const real d_G_rrrrs_xy = d_mu_4_rrrrs_zy*w_4_rrrrs_t -
-            inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zy + d_N_3_rrrrs_zx*s_4_rrrrs);
-        const real d_G_rrrrs_xz = d_mu_4_rrrrs_t*w_4_rrrrs_t - d_N_3_rrrrs_zz*inv_r_3_rrrrs_r0_y;
-        /* (rrrrs-N89) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_G_rrrrs_t_2 = d_Gamma_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x;
+        const real d_G_rrrrs_xx = d_Gamma_4_rrrrs_x*w_4_rrrrs_t -
+            d_Gamma_3_rrrrs_x*inv_r_3_rrrrs_r0_y;
+        const real d_G_rrrrs_xy = d_Gamma_3_rrrrs_y*w_4_rrrrs_t -
+            d_Gamma_3_rrrrs_y*inv_r_3_rrrrs_r0_y;
+        const real d_G_rrrrs_xz = d_Gamma_4_rrrrs_t*w_4_rrrrs_t -
+            inv_r_3_rrrrs_r0_y*inv_v_1_rrrrs_z*(_x_6*s_2_rrrrs - _y_2*c_2_rrrrs_t);
+        /* (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 4 */
+        const real d_alpha_4_rrrrs_t = e_1_rrrrs_r3_x*inv_v_1_rrrrs_z;
+        const real d_alpha_4_rrrrs_t_2 = e_1_rrrrs_r3_y*inv_v_1_rrrrs_z;
+        /* (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrrrs_xx = d_alpha_4_rrrrs_zx*h_4_rrrrs_y - d_G_rrrrs_xx;
-        const real d_c_rrrrs_xy = d_alpha_4_rrrrs_zy*h_4_rrrrs_y - d_G_rrrrs_xy;
-        const real d_c_rrrrs_xz = -d_G_rrrrs_xz - _y_2*h_4_rrrrs_z;
-        const real d_c_rrrrs_yz = _x_2*h_4_rrrrs_z - d_G_rrrrs_t_2;
-        const real d_c_rrrrs_zz = _y_2*h_4_rrrrs_x - _x_2*h_4_rrrrs_y -
-            inv_v_1_rrrrs_z*(J_1_rrrrs_xx*inv_v_1_rrrrs_z +
-            s_2_rrrrs*(J_2_rrrrs_xx*d_alpha_1_rrrrs_t + c_3_rrrrs*d_N_3_rrrrs_xz -
-            J_2_rrrrs_xy*d_alpha_1_rrrrs_t_2 - d_N_3_rrrrs_yz*s_3_rrrrs) - d_N_2_rrrrs_t);
-        /* (rrrrs-N91) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrrrs_t = d_G_rrrrs_t + d_c_rrrrs_xx + d_alpha_4_rrrrs_zy*h_4_rrrrs_x;
+        const real d_c_rrrrs_xx = h_4_rrrrs_y*(w_4_rrrrs_t - inv_r_3_rrrrs_r0_y) - d_G_rrrrs_xx;
+        const real d_c_rrrrs_xy = d_phi_4_rrrrs_t - d_G_rrrrs_xy;
+        const real d_c_rrrrs_xz = -d_G_rrrrs_xz - d_alpha_4_rrrrs_t_2*h_4_rrrrs_z;
+        const real d_c_rrrrs_yz = d_alpha_4_rrrrs_t*h_4_rrrrs_z - d_G_rrrrs_t_2;
+        /* (rrrrs-N90) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrrrs_t = d_c_rrrrs_xx - d_c_rrrrs_yy;
         const real Q_rrrrs_t_2 = R(0.5)*Q_rrrrs_t;
-        const real Q_rrrrs_t_3 = d_c_rrrrs_xx - d_c_rrrrs_zz;
+        const real Q_rrrrs_t_3 = d_c_rrrrs_xx + d_Gamma_1_rrrrs_z*inv_v_1_rrrrs_z +
+            d_alpha_4_rrrrs_t*h_4_rrrrs_y - d_alpha_4_rrrrs_t_2*h_4_rrrrs_x;
         const real Q_rrrrs_t_4 = R(0.5)*Q_rrrrs_t_3;
         const real Q_rrrrs_t_5 = axis_x_rrrrs_axes4_x*d_c_rrrrs_xy +
             axis_z_rrrrs_axes4_in_base_x*d_c_rrrrs_yz - Q_rrrrs_t_2*axis_y_rrrrs_axes4_in_base_x;
@@ -3255,24 +3327,19 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x;
         const real r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs;
         const real r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs;
-        /* (rrrrs-A9) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrrrs_t = c_3_rrrrs*rrrrs_joint3_offset_x;
-        const real bias_rrrrs_t_2 = rrrrs_joint3_offset_x*s_3_rrrrs;
-        /* (rrrrs-N67) coefficient of the acceleration in: moment about axis 2 of the distal links'
+        /* (rrrrs-N70) coefficient of the acceleration in: moment about axis 2 of the distal links'
            inertia and weight */
-        const real d_Gamma_2_rrrrs_r0_x = c_3_rrrrs*d_N_2_rrrrs_zx + d_N_2_rrrrs_zy*s_3_rrrrs;
-        const real d_Gamma_2_rrrrs_r0_y = c_3_rrrrs*d_N_2_rrrrs_zy - d_N_2_rrrrs_zx*s_3_rrrrs;
-        /* (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real d_Gamma_2_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(L_c3_2_rrrrs_z -
+            d_Gamma_3_rrrrs_t_2);
+        /* (rrrrs-N94) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 2 */
-        const real d_P_2_rrrrs_x = c_4_rrrrs*d_Gamma_2_rrrrs_r0_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
-            d_Gamma_2_rrrrs_r0_y*s_4_rrrrs -
-            d_mu_4_rrrrs_zx*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x;
-        const real d_P_2_rrrrs_y = c_4_rrrrs*d_Gamma_2_rrrrs_r0_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y +
-            d_Gamma_2_rrrrs_r0_x*s_4_rrrrs - d_G_rrrrs_t*r_2_rrrrs_r1_x;
-        const real d_P_2_rrrrs_z = d_N_3_rrrrs_zz + J_2_rrrrs_xz*d_alpha_1_rrrrs_t +
-            d_G_rrrrs_xz*r_2_rrrrs_r1_y + rrrrs_joint3_offset_x*(_y*h_3_rrrrs_z*s_3_rrrrs -
-            _x*c_3_rrrrs*h_3_rrrrs_z) - J_2_rrrrs_yz*d_alpha_1_rrrrs_t_2 -
-            d_G_rrrrs_t_2*r_2_rrrrs_r1_x;
+        const real d_P_2_rrrrs_x = d_Gamma_2_rrrrs_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
+            d_Gamma_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x;
+        const real d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y -
+            d_G_rrrrs_t*r_2_rrrrs_r1_x;
+        const real d_P_2_rrrrs_z = d_G_rrrrs_xz*r_2_rrrrs_r1_y +
+            inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 - Jc_2_rrrrs_t_3) -
+            c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x;
         const real d_P_2_rrrrs_in_base_x = axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x +
             axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
             axis_z_rrrrs_axes4_in_base_x*d_P_2_rrrrs_z;
@@ -3291,38 +3358,29 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
             d_P_2_rrrrs_in_base_x*q_rrrrs_in_base_y;
         /* (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1 */
         const real d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y;
-        /* (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d1_alpha_3_rrrrs_z = 1 - d1_qdd_3_rrrrs;
-        /* (rrrrs-N42) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d1_mu_3_rrrrs_z = J_3_rrrrs_zz*d1_alpha_3_rrrrs_z + bias_rrrrs_t*h_3_rrrrs_x -
-            bias_rrrrs_t_2*h_3_rrrrs_y;
-        /* (rrrrs-A41) coefficient of the acceleration in: angular acceleration of link 4 */
-        const real d1_alpha_4_rrrrs_z = d1_alpha_3_rrrrs_z +
-            inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x - r_2_rrrrs_r1_x);
-        /* (rrrrs-N32) coefficient of the acceleration in: inertia moment of the links that turn with link
-           4, about their reference points */
-        const real d1_mu_4_rrrrs_t = J_4_rrrrs_zz*d1_alpha_4_rrrrs_z;
-        /* (rrrrs-N46) coefficient of the acceleration in: moment about joint 3 of the links from 3
-           outwards, the force at the connection point left out */
-        const real d1_N_3_rrrrs_z = d1_mu_3_rrrrs_z + d1_mu_4_rrrrs_t;
-        /* (rrrrs-N21) coefficient of the acceleration in: inertia force of link 3 less its weight */
-        const real d1_f_3_rrrrs_x = bias_rrrrs_t_2*rrrrs_link3_mass -
-            d1_alpha_3_rrrrs_z*h_3_rrrrs_y;
-        const real d1_f_3_rrrrs_y = bias_rrrrs_t*rrrrs_link3_mass +
-            d1_alpha_3_rrrrs_z*h_3_rrrrs_x;
-        /* (rrrrs-N60) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d1_N_2_rrrrs_z = J_2_rrrrs_zz + d1_N_3_rrrrs_z +
-            rrrrs_joint3_offset_x*(c_3_rrrrs*d1_f_3_rrrrs_y + d1_f_3_rrrrs_x*s_3_rrrrs);
-        /* (rrrrs-N86) coefficient of the acceleration in: force at the connection point that balances the
+        /* (rrrrs-N59) coefficient of the acceleration in: moment about axis 3 of the distal links'
+           inertia and weight */
+        const real d1_Gamma_3_rrrrs_t =
+            J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
+            r_2_rrrrs_r1_x);
+        const real d1_Gamma_3_rrrrs = L_c3_2_rrrrs_z + d1_Gamma_3_rrrrs_t -
+            Jc_3_rrrrs_zz*d1_qdd_3_rrrrs;
+        /* (rrrrs-N49) coefficient of the acceleration in: moment about axis 4 of the distal links'
+           inertia and weight */
+        const real d1_Gamma_4_rrrrs = J_4_rrrrs_zz + d1_Gamma_3_rrrrs_t -
+            J_4_rrrrs_zz*d1_qdd_3_rrrrs;
+        /* (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d1_G_rrrrs_t = d1_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x;
-        /* (rrrrs-N96) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real d1_G_rrrrs_t = d1_Gamma_4_rrrrs*inv_rrrrs_platform_joint_offset_x;
+        /* (rrrrs-N71) coefficient of the acceleration in: moment about axis 2 of the distal links'
+           inertia and weight */
+        const real d1_Gamma_2_rrrrs = J_2_rrrrs_zz + Jc_2_rrrrs_t_4 + Jc_3_rrrrs_zz +
+            d1_Gamma_3_rrrrs_t - L_c3_2_rrrrs_z*d1_qdd_3_rrrrs;
+        /* (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 2 */
         const real d1_P_2_rrrrs_t = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x
-            - d1_N_3_rrrrs_z) - d1_G_rrrrs_t*r_2_rrrrs_r1_x;
-        const real d1_P_2_rrrrs = d1_N_2_rrrrs_z + d1_P_2_rrrrs_t;
+            - d1_Gamma_3_rrrrs) - d1_G_rrrrs_t*r_2_rrrrs_r1_x;
+        const real d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t;
         o->sum[0][k] = Q_rrrrs_t_12;  /* total_rrrrs_xx */
         o->sum[1][k] = Q_rrrrs_t_13;  /* total_rrrrs_xy */
         o->sum[2][k] = Q_rrrrs_t_14;  /* total_rrrrs_xz */
@@ -3410,17 +3468,24 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_2_rrrs_xz = m->J_2_rrrs_xz[i];
         const real J_2_rrrs_yy = m->J_2_rrrs_yy[i];
         const real J_2_rrrs_yz = m->J_2_rrrs_yz[i];
-        const real J_2_rrrs_zz = m->J_2_rrrs_zz[i];
         const real J_3_rrrs_xx = m->J_3_rrrs_xx[i];
         const real J_3_rrrs_xy = m->J_3_rrrs_xy[i];
         const real J_3_rrrs_xz = m->J_3_rrrs_xz[i];
         const real J_3_rrrs_yy = m->J_3_rrrs_yy[i];
         const real J_3_rrrs_yz = m->J_3_rrrs_yz[i];
         const real J_3_rrrs_zz = m->J_3_rrrs_zz[i];
+        const real Jc_1_rrrs_t = m->Jc_1_rrrs_t[i];
+        const real Jc_2_rrrs_zz = m->Jc_2_rrrs_zz[i];
         const real Kd_2_rrrs_t = m->Kd_2_rrrs_t[i];
         const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
         const real branch_1_rrrs = m->branch_1_rrrs[i];
         const real branch_2_rrrs = m->branch_2_rrrs[i];
+        const real d_Gamma_2_rrrs_t = m->d_Gamma_2_rrrs_t[i];
+        const real d_Gamma_2_rrrs_y = m->d_Gamma_2_rrrs_y[i];
+        const real d_c_rrrs_yy = m->d_c_rrrs_yy[i];
+        const real d_phi_3_rrrs_t = m->d_phi_3_rrrs_t[i];
+        const real h_2_rrrs_x = m->h_2_rrrs_x[i];
+        const real h_2_rrrs_y = m->h_2_rrrs_y[i];
         const real h_3_rrrs_x = m->h_3_rrrs_x[i];
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
@@ -3513,6 +3578,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real v_1_rrrs_z = e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
             e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs);
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
+        const real r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs;
         const real r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t;
         /* (rrrs-K8) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrrs = 1/rho2_1_rrrs;
@@ -3540,60 +3606,61 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
         const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
+        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        const real J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs;
+        const real _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs;
+        const real J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs;
+        const real _x_8 = J_3_rrrs_t_2 + J_3_rrrs_yy*s_3_rrrs;
+        const real _x_9 = J_3_rrrs_xz*c_3_rrrs + J_3_rrrs_yz*s_3_rrrs;
+        const real _y_4 = J_3_rrrs_yz*c_3_rrrs - J_3_rrrs_xz*s_3_rrrs;
+        /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_rrrs_xy = J_2_rrrs_xy + _x_8*c_3_rrrs - _x_7*s_3_rrrs;
+        const real _y_5 = -c_2_rrrs*(-Jc_2_rrrs_xy*s_2_rrrs - c_2_rrrs*(J_2_rrrs_yy +
+            c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs - J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 -
+            J_3_rrrs_xx*s_3_rrrs))) - s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx +
+            _x_7*c_3_rrrs + _x_8*s_3_rrrs));
+        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y -
+            h_2_rrrs_x*s_2_rrrs);
+        /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_rrrs_z = 1/v_1_rrrs_z;
         /* (rrrs-V8) reciprocal vector 2 */
         const real inv_r_2_rrrs_r0_y = 1/r_2_rrrs_r0_y;
-        /* (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_rrrs_t = inv_v_1_rrrs_z*s_2_rrrs;
-        const real d_alpha_1_rrrs_t_2 = c_2_rrrs*inv_v_1_rrrs_z;
-        /* (rrrs-V8) reciprocal vector 2 */
-        const real w_2_rrrs_t = c_3_rrrs*inv_r_2_rrrs_r0_y;
-        const real w_2_rrrs_t_2 = inv_r_2_rrrs_r0_y*s_3_rrrs;
         /* (rrrs-V9) reciprocal vector 3 */
-        const real w_3_rrrs_t =
-            inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*(c_3_rrrs*r_2_rrrs_x +
-            r_2_rrrs_t*s_3_rrrs);
-        /* (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = d_alpha_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*d_alpha_1_rrrs_t;
-        const real _y_5 = -c_3_rrrs*d_alpha_1_rrrs_t_2 - d_alpha_1_rrrs_t*s_3_rrrs;
-        /* (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_rrrs_zx = w_3_rrrs_t - c_3_rrrs*w_2_rrrs_t - s_3_rrrs*w_2_rrrs_t_2;
-        const real d_alpha_3_rrrs_zy = inv_rrrs_platform_joint_offset_x + c_3_rrrs*w_2_rrrs_t_2 -
-            s_3_rrrs*w_2_rrrs_t;
-        /* (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_rrrs_t = J_3_rrrs_xz*_x_3 + J_3_rrrs_yz*_y_5;
-        const real d_mu_3_rrrs_xz = h_3_rrrs_y + J_3_rrrs_xx*_x_3 + J_3_rrrs_xy*_y_5;
-        const real d_mu_3_rrrs_yz = J_3_rrrs_xy*_x_3 + J_3_rrrs_yy*_y_5 - h_3_rrrs_x;
-        const real d_mu_3_rrrs_zx = J_3_rrrs_zz*d_alpha_3_rrrs_zx - h_3_rrrs_y;
-        const real d_mu_3_rrrs_zy = h_3_rrrs_x + J_3_rrrs_zz*d_alpha_3_rrrs_zy;
-        /* (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_rrrs_zx = c_3_rrrs*d_mu_3_rrrs_zx + d_mu_3_rrrs_zy*s_3_rrrs -
-            J_2_rrrs_zz*w_2_rrrs_t;
-        const real d_N_2_rrrs_zy = J_2_rrrs_zz*w_2_rrrs_t_2 + c_3_rrrs*d_mu_3_rrrs_zy -
-            d_mu_3_rrrs_zx*s_3_rrrs;
-        const real _y_6 = -c_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_yz - J_2_rrrs_xy*d_alpha_1_rrrs_t -
-            J_2_rrrs_yy*d_alpha_1_rrrs_t_2 - d_mu_3_rrrs_xz*s_3_rrrs) -
-            s_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_xz + d_mu_3_rrrs_yz*s_3_rrrs -
-            J_2_rrrs_xx*d_alpha_1_rrrs_t - J_2_rrrs_xy*d_alpha_1_rrrs_t_2);
-        /* (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_3_rrrs_t = inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*r_2_rrrs_r0_x;
+        /* (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrrs_z = e_1_rrrs_r2_x*h_3_rrrs_y + inv_v_1_rrrs_z*(J_1_rrrs_xx +
+            _y_5) - e_1_rrrs_r2_y*h_3_rrrs_x;
+        /* (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrrs_t_2 = d_Gamma_2_rrrs_t*r_2_rrrs_r0_x;
+        const real d_Gamma_2_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(Jc_2_rrrs_zz -
+            d_Gamma_2_rrrs_t_2);
+        /* (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_rrrs_t = inv_v_1_rrrs_z*(-_x_9*s_2_rrrs - _y_4*c_2_rrrs);
+        const real d_Gamma_3_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(J_3_rrrs_zz -
+            d_Gamma_2_rrrs_t_2);
+        /* (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3 */
+        const real d_alpha_3_rrrs_t = e_1_rrrs_r2_x*inv_v_1_rrrs_z;
+        const real d_alpha_3_rrrs_t_2 = e_1_rrrs_r2_y*inv_v_1_rrrs_z;
+        /* (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrrs_xx = d_alpha_3_rrrs_zx*h_3_rrrs_y +
-            inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zx - d_N_2_rrrs_zy*s_3_rrrs) -
-            d_mu_3_rrrs_zx*w_3_rrrs_t;
-        const real d_c_rrrs_xy = d_alpha_3_rrrs_zy*h_3_rrrs_y +
-            inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zy + d_N_2_rrrs_zx*s_3_rrrs) -
-            d_mu_3_rrrs_zy*w_3_rrrs_t;
-        const real d_c_rrrs_xz = inv_r_2_rrrs_r0_y*(d_mu_3_rrrs_t - J_2_rrrs_xz*d_alpha_1_rrrs_t -
-            J_2_rrrs_yz*d_alpha_1_rrrs_t_2) - _y_5*h_3_rrrs_z - d_mu_3_rrrs_t*w_3_rrrs_t;
-        const real d_c_rrrs_yz = _x_3*h_3_rrrs_z - d_mu_3_rrrs_t*inv_rrrs_platform_joint_offset_x;
-        /* (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrrs_t = d_c_rrrs_xx + d_alpha_3_rrrs_zy*h_3_rrrs_x +
-            d_mu_3_rrrs_zy*inv_rrrs_platform_joint_offset_x;
+        const real d_c_rrrs_xx = d_Gamma_2_rrrs_x*inv_r_2_rrrs_r0_y + h_3_rrrs_y*(w_3_rrrs_t -
+            inv_r_2_rrrs_r0_y) - d_Gamma_3_rrrs_x*w_3_rrrs_t;
+        const real d_c_rrrs_xy = d_phi_3_rrrs_t + d_Gamma_2_rrrs_y*inv_r_2_rrrs_r0_y -
+            d_Gamma_2_rrrs_y*w_3_rrrs_t;
+        const real d_c_rrrs_xz = inv_r_2_rrrs_r0_y*inv_v_1_rrrs_z*(-c_2_rrrs*(J_2_rrrs_yz + _y_4)
+            - s_2_rrrs*(J_2_rrrs_xz + _x_9)) - d_Gamma_3_rrrs_t*w_3_rrrs_t -
+            d_alpha_3_rrrs_t_2*h_3_rrrs_z;
+        const real d_c_rrrs_yz = d_alpha_3_rrrs_t*h_3_rrrs_z -
+            d_Gamma_3_rrrs_t*inv_rrrs_platform_joint_offset_x;
+        /* (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrrs_t = d_c_rrrs_xx - d_c_rrrs_yy;
         const real Q_rrrs_t_2 = R(0.5)*Q_rrrs_t;
-        const real Q_rrrs_t_3 = d_c_rrrs_xx + _x_3*h_3_rrrs_y + inv_v_1_rrrs_z*(_y_6 +
-            J_1_rrrs_xx*inv_v_1_rrrs_z) - _y_5*h_3_rrrs_x;
+        const real Q_rrrs_t_3 = d_c_rrrs_xx + d_Gamma_1_rrrs_z*inv_v_1_rrrs_z +
+            d_alpha_3_rrrs_t*h_3_rrrs_y - d_alpha_3_rrrs_t_2*h_3_rrrs_x;
         const real Q_rrrs_t_4 = R(0.5)*Q_rrrs_t_3;
         const real Q_rrrs_t_5 = axis_x_rrrs_axes3_x*d_c_rrrs_xy +
             axis_z_rrrs_axes3_in_base_x*d_c_rrrs_yz - Q_rrrs_t_2*axis_y_rrrs_axes3_in_base_x;
@@ -3859,7 +3926,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 49, w, code, M);
 }
 
-/* ---- Z: 1045 mul, 769 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- Z: 1033 mul, 769 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4286,6 +4353,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         const real W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x;
         const real W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z;
+        const real W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3;
         const real W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z;
         const real W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z;
@@ -4294,40 +4362,28 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         const real bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x;
         const real d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs;
         const real d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs;
-        const real bias_rrrrs_t_3 = omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y +
-            d_2_rrrrs_r2_x*s_4_rrrrs) - omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x -
-            d_2_rrrrs_r2_y*s_4_rrrrs);
-        const real bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x;
-        const real bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs;
-        const real d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs;
-        const real d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs;
-        const real bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs;
-        const real bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs;
-        const real bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x -
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x;
-        const real bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs;
-        const real bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_9*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_x = bias_rrrrs_t_13*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_y + bias_rrrrs_t_8*omega_3_rrrrs_r0_y -
-            bias_rrrrs_t_12*omega_3_rrrrs_z - bias_rrrrs_t_14*omega_4_rrrrs_z -
-            bias_rrrrs_t_15*omega_3_rrrrs_r0_y - bias_rrrrs_t_7*yd_2_rrrrs;
-        const real bias_rrrrs_y = bias_rrrrs_t_15*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_11*omega_3_rrrrs_z - bias_rrrrs_t_13*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_x - bias_rrrrs_t_6*yd_2_rrrrs -
-            bias_rrrrs_t_8*omega_3_rrrrs_r0_x;
-        const real bias_rrrrs_z = bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs -
-            beta_3_rrrrs_y*s_4_rrrrs) + bias_rrrrs_t_11*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_12*omega_3_rrrrs_r0_x + bias_rrrrs_t_14*omega_3_rrrrs_r0_x +
-            bias_rrrrs_t_6*omega_3_rrrrs_r0_y + bias_rrrrs_t_7*omega_3_rrrrs_r0_x +
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-            beta_4_rrrrs_y*rrrrs_platform_joint_offset_x;
+        const real d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs;
+        const real d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs;
+        const real bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x;
+        const real bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs;
+        const real d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs;
+        const real d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs;
+        const real bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x;
+        const real bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs;
+        const real bias_rrrrs_x = W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_y - W_4_rrrrs_t_2*d_2_rrrrs_r3_x -
+            W_4_rrrrs_xx*rrrrs_platform_joint_offset_x - bias_rrrrs_t_5*(W_3_rrrrs_t_3 +
+            W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 + W_4_rrrrs_t_2);
+        const real bias_rrrrs_y = W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_x + W_4_rrrrs_xy*rrrrs_platform_joint_offset_x -
+            W_4_rrrrs_t*d_2_rrrrs_r3_y - bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) -
+            d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 + W_4_rrrrs_t);
+        const real bias_rrrrs_z = bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z -
+            beta_3_rrrrs_r0_y) + bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs +
+            omega_3_rrrrs_r0_y*omega_3_rrrrs_z - beta_3_rrrrs_y*s_4_rrrrs) +
+            rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y) +
+            2*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+            2*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs;
         /* (rrrrs-A1) centripetal acceleration of the connection point */
         const real u_1_rrrrs_x = S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z;
         const real u_1_rrrrs_y = S_dot_rrrrs_t*omega_z - S_dot_rrrrs_t_3*omega_x;
@@ -4346,19 +4402,19 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         /* (rrrrs-A15) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_3_rrrrs_o = inv_r_3_rrrrs_r0_y*rel_rrrrs_o_x;
         const real qdd_1_rrrrs_o = inv_v_1_rrrrs_z*rel_rrrrs_o_z;
-        /* (rrrrs-A25) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrrs-A23) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_rrrrs_o_t = qdd_1_rrrrs_o*s_2_rrrrs;
         const real alpha_1_rrrrs_o_t_2 = c_2_rrrrs_t*qdd_1_rrrrs_o;
-        /* (rrrrs-A30) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x;
         const real alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y;
-        /* (rrrrs-A32) acceleration tensor of link 2 */
+        /* (rrrrs-A29) acceleration tensor of link 2 */
         const real B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y;
         const real B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x;
-        /* (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        /* (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3 */
         const real a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3);
         const real a_o3_rrrrs_o_t_2 = W_2_rrrrs_xy*rrrrs_joint3_offset_x;
-        /* (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x;
         const real g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs;
@@ -4371,19 +4427,19 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         const real acc_3_rrrrs_o_y = a_o3_rrrrs_o_t*s_3_rrrrs - g_r4_y -
             a_o3_rrrrs_o_t_2*c_3_rrrrs;
         const real acc_3_rrrrs_o_z = B_2_rrrrs_o_zx*rrrrs_joint3_offset_x - g_r1_x;
-        /* (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_rrrrs_o_x = alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs -
             zeta_3_rrrrs_x;
         const real alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs -
             alpha_2_rrrrs_o_x*s_3_rrrrs;
-        /* (rrrrs-A38) acceleration tensor of link 3 */
+        /* (rrrrs-A33) acceleration tensor of link 3 */
         const real B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o;
         const real B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y;
         const real B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o;
         const real B_3_rrrrs_o_yz = W_3_rrrrs_yz - alpha_3_rrrrs_o_x;
         const real B_3_rrrrs_o_zx = W_3_rrrrs_xz - alpha_3_rrrrs_o_y;
         const real B_3_rrrrs_o_zy = W_3_rrrrs_yz + alpha_3_rrrrs_o_x;
-        /* (rrrrs-N43) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N54) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_rrrrs_o_x = B_3_rrrrs_o_yx*J_3_rrrrs_xz + B_3_rrrrs_o_zy*Sigma_3_rrrrs_yy
             + J_3_rrrrs_yz*(W_3_rrrrs_t_2 - W_3_rrrrs_t_3) + acc_3_rrrrs_o_z*h_3_rrrrs_y -
@@ -4397,26 +4453,26 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
             + J_3_rrrrs_xy*(W_3_rrrrs_t - W_3_rrrrs_t_2) + acc_3_rrrrs_o_y*h_3_rrrrs_x -
             B_3_rrrrs_o_xy*Sigma_3_rrrrs_yy - B_3_rrrrs_o_yz*J_3_rrrrs_xz -
             acc_3_rrrrs_o_x*h_3_rrrrs_y;
-        /* (rrrrs-N24) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N16) remainder without the acceleration in: acceleration of the reference point of link
            4, less gravity */
         const real acc_4_rrrrs_o_x = u_1_rrrrs_tip_x + g_r4_y*s_4_rrrrs - c_4_rrrrs*g_r4_x;
         const real acc_4_rrrrs_o_y = u_1_rrrrs_tip_y - c_4_rrrrs*g_r4_y - g_r4_x*s_4_rrrrs;
         const real acc_4_rrrrs_o_z = u_1_rrrrs_tip_z - g_r1_x;
-        /* (rrrrs-A42) remainder without the acceleration in: angular acceleration of link 4 */
+        /* (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 4 */
         const real alpha_4_rrrrs_o_x = alpha_3_rrrrs_o_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs
             - alpha_3_rrrrs_o_y*s_4_rrrrs;
         const real alpha_4_rrrrs_o_y = alpha_3_rrrrs_o_x*s_4_rrrrs + alpha_3_rrrrs_o_y*c_4_rrrrs -
             zeta_4_rrrrs_y;
         const real alpha_4_rrrrs_o_z = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y +
             qdd_3_rrrrs_o*r_3_rrrrs_r0_x) - qdd_3_rrrrs_o;
-        /* (rrrrs-A44) acceleration tensor of link 4 */
+        /* (rrrrs-A38) acceleration tensor of link 4 */
         const real B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z;
         const real B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y;
         const real B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z;
         const real B_4_rrrrs_o_yz = W_4_rrrrs_yz - alpha_4_rrrrs_o_x;
         const real B_4_rrrrs_o_zx = W_4_rrrrs_xz - alpha_4_rrrrs_o_y;
         const real B_4_rrrrs_o_zy = W_4_rrrrs_yz + alpha_4_rrrrs_o_x;
-        /* (rrrrs-N33) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with
            link 4, about their reference points */
         const real mu_4_rrrrs_o_x = B_4_rrrrs_o_yx*J_4_rrrrs_xz + B_4_rrrrs_o_zy*Sigma_4_rrrrs_yy
             + J_4_rrrrs_yz*(W_4_rrrrs_t_2 - W_4_rrrrs_t_3) + acc_4_rrrrs_o_z*h_4_rrrrs_y -
@@ -4430,21 +4486,21 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
             + J_4_rrrrs_xy*(W_4_rrrrs_t - W_4_rrrrs_t_2) + acc_4_rrrrs_o_y*h_4_rrrrs_x -
             B_4_rrrrs_o_xy*Sigma_4_rrrrs_yy - B_4_rrrrs_o_yz*J_4_rrrrs_xz -
             acc_4_rrrrs_o_x*h_4_rrrrs_y;
-        /* (rrrrs-N47) remainder without the acceleration in: moment about joint 3 of the links from 3
+        /* (rrrrs-N56) remainder without the acceleration in: moment about joint 3 of the links from 3
            outwards, the force at the connection point left out */
         const real N_3_rrrrs_o_x = mu_3_rrrrs_o_x + c_4_rrrrs*mu_4_rrrrs_o_x +
             mu_4_rrrrs_o_y*s_4_rrrrs;
         const real N_3_rrrrs_o_y = mu_3_rrrrs_o_y + c_4_rrrrs*mu_4_rrrrs_o_y -
             mu_4_rrrrs_o_x*s_4_rrrrs;
         const real N_3_rrrrs_o_z = mu_3_rrrrs_o_z + mu_4_rrrrs_o_z;
-        /* (rrrrs-N22) remainder without the acceleration in: inertia force of link 3 less its weight */
+        /* (rrrrs-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
         const real f_3_rrrrs_o_x = B_3_rrrrs_o_xy*h_3_rrrrs_y + B_3_rrrrs_o_xz*h_3_rrrrs_z +
             acc_3_rrrrs_o_x*rrrrs_link3_mass - h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3);
         const real f_3_rrrrs_o_y = B_3_rrrrs_o_yx*h_3_rrrrs_x + B_3_rrrrs_o_yz*h_3_rrrrs_z +
             acc_3_rrrrs_o_y*rrrrs_link3_mass - h_3_rrrrs_y*(W_3_rrrrs_t + W_3_rrrrs_t_3);
         const real f_3_rrrrs_o_z = B_3_rrrrs_o_zx*h_3_rrrrs_x + B_3_rrrrs_o_zy*h_3_rrrrs_y +
             acc_3_rrrrs_o_z*rrrrs_link3_mass - h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2);
-        /* (rrrrs-N57) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N64) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrrrs_o_x = B_2_rrrrs_o_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2
             - W_2_rrrrs_t_3) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t + g_r3_y*h_2_rrrrs_z -
@@ -4455,7 +4511,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         const real mu_2_rrrrs_o_z = J_2_rrrrs_xy*(W_2_rrrrs_t - W_2_rrrrs_t_2) +
             J_2_rrrrs_xz*alpha_1_rrrrs_o_t + Sigma_2_rrrrs_yy*W_2_rrrrs_xy + g_r3_x*h_2_rrrrs_y -
             J_2_rrrrs_yz*alpha_1_rrrrs_o_t_2 - Sigma_2_rrrrs_xx*W_2_rrrrs_xy - g_r3_y*h_2_rrrrs_x;
-        /* (rrrrs-N61) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (rrrrs-N66) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_rrrrs_o_x = mu_2_rrrrs_o_x + N_3_rrrrs_o_x*c_3_rrrrs -
             N_3_rrrrs_o_y*s_3_rrrrs;
@@ -4463,29 +4519,29 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
             N_3_rrrrs_o_y*c_3_rrrrs - f_3_rrrrs_o_z*rrrrs_joint3_offset_x;
         const real N_2_rrrrs_o_z = N_3_rrrrs_o_z + mu_2_rrrrs_o_z +
             rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_o_y + f_3_rrrrs_o_x*s_3_rrrrs);
-        /* (rrrrs-N75) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrrs-N76) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrrrs_o_z = J_1_rrrrs_xx*qdd_1_rrrrs_o - g_r1_x*h_1_rrrrs_y -
             g_r1_y*h_1_rrrrs_z;
-        /* (rrrrs-N79) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrrrs-N78) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrrrs_o_z = mu_1_rrrrs_o_z + N_2_rrrrs_o_x*s_2_rrrrs -
             N_2_rrrrs_o_y*c_2_rrrrs_t;
-        /* (rrrrs-N87) remainder without the acceleration in: force at the connection point that balances
+        /* (rrrrs-N86) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrrrs_o_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_o_z;
         const real G_rrrrs_o_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_o_t*r_3_rrrrs_r0_x -
             N_3_rrrrs_o_z);
-        /* (rrrrs-N90) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrrrs-N89) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
-        const real c_rrrrs_o_x = h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - G_rrrrs_o_t_2 -
+        const real c_rrrrs_o_x = W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_o_t_2 -
             B_4_rrrrs_o_xy*h_4_rrrrs_y - B_4_rrrrs_o_xz*h_4_rrrrs_z;
         const real c_rrrrs_o_y = h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_o_t -
             B_4_rrrrs_o_yx*h_4_rrrrs_x - B_4_rrrrs_o_yz*h_4_rrrrs_z;
         const real c_rrrrs_o_z = h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) -
             B_4_rrrrs_o_zx*h_4_rrrrs_x - B_4_rrrrs_o_zy*h_4_rrrrs_y -
             N_1_rrrrs_o_z*inv_v_1_rrrrs_z;
-        /* (rrrrs-N92) velocity and gravity terms of the leg force */
+        /* (rrrrs-N91) velocity and gravity terms of the leg force */
         const real U_rrrrs_in_base_x = -axis_x_rrrrs_axes4_x*c_rrrrs_o_x -
             axis_y_rrrrs_axes4_in_base_x*c_rrrrs_o_y - axis_z_rrrrs_axes4_in_base_x*c_rrrrs_o_z;
         const real U_rrrrs_in_base_y = -axis_x_rrrrs_axes4_y*c_rrrrs_o_x -
@@ -4499,7 +4555,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
             U_rrrrs_in_base_z*q_rrrrs_in_base_x;
         const real Z_a_t_3 = U_rrrrs_in_base_y*q_rrrrs_in_base_x -
             U_rrrrs_in_base_x*q_rrrrs_in_base_y;
-        /* (rrrrs-N97) remainder without the acceleration in: inertia and weight of the leg along the
+        /* (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the
            extra freedom of joint 2 */
         const real P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x;
         const real P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t;
@@ -4792,18 +4848,18 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs;
         const real g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs;
         const real g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2;
-        /* (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1 */
+        /* (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1 */
         const real alpha_1_rrrs_o_t = qdd_1_rrrs_o*s_2_rrrs;
         const real alpha_1_rrrs_o_t_2 = c_2_rrrs*qdd_1_rrrs_o;
-        /* (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t;
         const real alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y;
-        /* (rrrs-A25) acceleration tensor of link 2 */
+        /* (rrrs-A23) acceleration tensor of link 2 */
         const real B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o;
         const real B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o;
         const real B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y;
         const real B_2_rrrs_o_zy = alpha_2_rrrs_o_x + zeta_2_rrrs_x;
-        /* (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrrs_o_x = B_2_rrrs_o_yx*J_2_rrrs_xz + B_2_rrrs_o_zy*Sigma_2_rrrs_yy +
             J_2_rrrs_yz*(W_2_rrrs_t_2 - W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z -
@@ -4814,26 +4870,26 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real mu_2_rrrs_o_z = B_2_rrrs_o_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t -
             W_2_rrrs_t_2) + g_r3_x_2*h_2_rrrs_y - B_2_rrrs_o_xy*Sigma_2_rrrs_yy -
             J_2_rrrs_xz*alpha_1_rrrs_o_t - J_2_rrrs_yz*alpha_1_rrrs_o_t_2 - g_r3_y_2*h_2_rrrs_x;
-        /* (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_rrrs_o_x = u_1_rrrs_tip_x + g_r3_y_2*s_3_rrrs - c_3_rrrs*g_r3_x_2;
         const real acc_3_rrrs_o_y = u_1_rrrs_tip_y - c_3_rrrs*g_r3_y_2 - g_r3_x_2*s_3_rrrs;
         const real acc_3_rrrs_o_z = u_1_rrrs_tip_z - g_r1_x_2;
-        /* (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_rrrs_o_x = alpha_2_rrrs_o_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs -
             alpha_2_rrrs_o_y*s_3_rrrs;
         const real alpha_3_rrrs_o_y = alpha_2_rrrs_o_x*s_3_rrrs + alpha_2_rrrs_o_y*c_3_rrrs -
             zeta_3_rrrs_y;
         const real alpha_3_rrrs_o_z = inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y +
             qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o;
-        /* (rrrs-A30) acceleration tensor of link 3 */
+        /* (rrrs-A28) acceleration tensor of link 3 */
         const real B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z;
         const real B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y;
         const real B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z;
         const real B_3_rrrs_o_yz = W_3_rrrs_yz - alpha_3_rrrs_o_x;
         const real B_3_rrrs_o_zx = W_3_rrrs_xz - alpha_3_rrrs_o_y;
         const real B_3_rrrs_o_zy = W_3_rrrs_yz + alpha_3_rrrs_o_x;
-        /* (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_rrrs_o_x = B_3_rrrs_o_yx*J_3_rrrs_xz + B_3_rrrs_o_zy*Sigma_3_rrrs_yy +
             J_3_rrrs_yz*(W_3_rrrs_t_2 - W_3_rrrs_t_3) + acc_3_rrrs_o_z*h_3_rrrs_y -
@@ -4844,22 +4900,22 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real mu_3_rrrs_o_z = B_3_rrrs_o_xz*J_3_rrrs_yz + B_3_rrrs_o_yx*Sigma_3_rrrs_xx +
             J_3_rrrs_xy*(W_3_rrrs_t - W_3_rrrs_t_2) + acc_3_rrrs_o_y*h_3_rrrs_x -
             B_3_rrrs_o_xy*Sigma_3_rrrs_yy - B_3_rrrs_o_yz*J_3_rrrs_xz - acc_3_rrrs_o_x*h_3_rrrs_y;
-        /* (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2
+        /* (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_rrrs_o_x = mu_2_rrrs_o_x + c_3_rrrs*mu_3_rrrs_o_x + mu_3_rrrs_o_y*s_3_rrrs;
         const real N_2_rrrs_o_y = mu_2_rrrs_o_y + c_3_rrrs*mu_3_rrrs_o_y - mu_3_rrrs_o_x*s_3_rrrs;
         const real N_2_rrrs_o_z = mu_2_rrrs_o_z + mu_3_rrrs_o_z;
-        /* (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrrs_o_z = J_1_rrrs_xx*qdd_1_rrrs_o - g_r1_x_2*h_1_rrrs_y -
             g_r1_y_2*h_1_rrrs_z;
-        /* (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrrs_o_z = mu_1_rrrs_o_z - N_2_rrrs_o_x*s_2_rrrs - N_2_rrrs_o_y*c_2_rrrs;
-        /* (rrrs-N48) remainder without the acceleration in: force at the connection point that balances
+        /* (rrrs-N54) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrrs_o_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_o_z;
-        /* (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrrs_o_x = h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) -
             B_3_rrrs_o_xy*h_3_rrrs_y - B_3_rrrs_o_xz*h_3_rrrs_z -
@@ -4868,7 +4924,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
             B_3_rrrs_o_yx*h_3_rrrs_x - B_3_rrrs_o_yz*h_3_rrrs_z;
         const real c_rrrs_o_z = h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_o_zx*h_3_rrrs_x
             - B_3_rrrs_o_zy*h_3_rrrs_y - N_1_rrrs_o_z*inv_v_1_rrrs_z;
-        /* (rrrs-N53) velocity and gravity terms of the leg force */
+        /* (rrrs-N59) velocity and gravity terms of the leg force */
         const real U_rrrs_in_base_x = -axis_x_rrrs_axes3_x*c_rrrs_o_x -
             axis_y_rrrs_axes3_in_base_x*c_rrrs_o_y - axis_z_rrrs_axes3_in_base_x*c_rrrs_o_z;
         const real U_rrrs_in_base_y = -axis_x_rrrs_axes3_y*c_rrrs_o_x -
@@ -5540,7 +5596,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 49, w, code, H);
 }
 
-/* ---- required: 1159 mul, 858 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- required: 1147 mul, 858 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -6012,6 +6068,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x;
         const real W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z;
+        const real W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3;
         const real W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z;
         const real W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z;
@@ -6020,43 +6077,31 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x;
         const real d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs;
         const real d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs;
-        const real bias_rrrrs_t_3 = omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y +
-            d_2_rrrrs_r2_x*s_4_rrrrs) - omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x -
-            d_2_rrrrs_r2_y*s_4_rrrrs);
-        const real bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x;
-        const real bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs;
-        const real d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs;
-        const real d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs;
-        const real bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs;
-        const real bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs;
-        const real bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x -
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x;
-        const real bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs;
-        const real bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_9*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_x = bias_rrrrs_t_13*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_y + bias_rrrrs_t_8*omega_3_rrrrs_r0_y -
-            bias_rrrrs_t_12*omega_3_rrrrs_z - bias_rrrrs_t_14*omega_4_rrrrs_z -
-            bias_rrrrs_t_15*omega_3_rrrrs_r0_y - bias_rrrrs_t_7*yd_2_rrrrs;
-        const real bias_rrrrs_y = bias_rrrrs_t_15*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_11*omega_3_rrrrs_z - bias_rrrrs_t_13*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_x - bias_rrrrs_t_6*yd_2_rrrrs -
-            bias_rrrrs_t_8*omega_3_rrrrs_r0_x;
-        const real bias_rrrrs_z = bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs -
-            beta_3_rrrrs_y*s_4_rrrrs) + bias_rrrrs_t_11*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_12*omega_3_rrrrs_r0_x + bias_rrrrs_t_14*omega_3_rrrrs_r0_x +
-            bias_rrrrs_t_6*omega_3_rrrrs_r0_y + bias_rrrrs_t_7*omega_3_rrrrs_r0_x +
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-            beta_4_rrrrs_y*rrrrs_platform_joint_offset_x;
-        /* (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        const real d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs;
+        const real d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs;
+        const real bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x;
+        const real bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs;
+        const real d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs;
+        const real d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs;
+        const real bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x;
+        const real bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs;
+        const real bias_rrrrs_x = W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_y - W_4_rrrrs_t_2*d_2_rrrrs_r3_x -
+            W_4_rrrrs_xx*rrrrs_platform_joint_offset_x - bias_rrrrs_t_5*(W_3_rrrrs_t_3 +
+            W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 + W_4_rrrrs_t_2);
+        const real bias_rrrrs_y = W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_x + W_4_rrrrs_xy*rrrrs_platform_joint_offset_x -
+            W_4_rrrrs_t*d_2_rrrrs_r3_y - bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) -
+            d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 + W_4_rrrrs_t);
+        const real bias_rrrrs_z = bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z -
+            beta_3_rrrrs_r0_y) + bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs +
+            omega_3_rrrrs_r0_y*omega_3_rrrrs_z - beta_3_rrrrs_y*s_4_rrrrs) +
+            rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y) +
+            2*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+            2*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs;
+        /* (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3 */
         const real a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3);
-        /* (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x;
         const real g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs;
@@ -6110,7 +6155,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-A13) acceleration of joint 1 */
         const real qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x;
         const real qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z;
-        /* (rrrrs-N23) acceleration of the reference point of link 4, less gravity */
+        /* (rrrrs-N15) acceleration of the reference point of link 4, less gravity */
         const real acc_4_rrrrs_x = S_ddot_rrrrs_tip_x - axis_x_rrrrs_axes4_x*gravity_x -
             axis_x_rrrrs_axes4_y*gravity_y - axis_x_rrrrs_axes4_z*gravity_z;
         const real acc_4_rrrrs_y = S_ddot_rrrrs_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
@@ -6120,36 +6165,36 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-A22) angular acceleration of link 1 */
         const real alpha_1_rrrrs_t = qdd_1_rrrrs*s_2_rrrrs;
         const real alpha_1_rrrrs_t_2 = c_2_rrrrs_t*qdd_1_rrrrs;
-        /* (rrrrs-A28) angular acceleration of link 2 */
+        /* (rrrrs-A26) angular acceleration of link 2 */
         const real alpha_2_rrrrs_x = alpha_1_rrrrs_t - zeta_2_rrrrs_x;
         const real alpha_2_rrrrs_y = -alpha_1_rrrrs_t_2 - zeta_2_rrrrs_y;
-        /* (rrrrs-A31) acceleration tensor of link 2 */
+        /* (rrrrs-A28) acceleration tensor of link 2 */
         const real B_2_rrrrs_xy = -W_2_rrrrs_xy - ydd_2_rrrrs;
         const real B_2_rrrrs_yx = ydd_2_rrrrs - W_2_rrrrs_xy;
         const real B_2_rrrrs_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_y;
         const real B_2_rrrrs_zy = alpha_2_rrrrs_x - zeta_2_rrrrs_x;
-        /* (rrrrs-A49) acceleration of the origin of joint 3 */
+        /* (rrrrs-A41) acceleration of the origin of joint 3 */
         const real a_o3_rrrrs_t = B_2_rrrrs_yx*rrrrs_joint3_offset_x;
-        /* (rrrrs-N13) acceleration of the reference point of link 3, less gravity */
+        /* (rrrrs-N9) acceleration of the reference point of link 3, less gravity */
         const real acc_3_rrrrs_x = a_o3_rrrrs_t*s_3_rrrrs - a_o3_rrrrs_o_t*c_3_rrrrs -
             c_3_rrrrs*g_r3_x - g_r3_y*s_3_rrrrs;
         const real acc_3_rrrrs_y = a_o3_rrrrs_o_t*s_3_rrrrs + a_o3_rrrrs_t*c_3_rrrrs +
             g_r3_x*s_3_rrrrs - c_3_rrrrs*g_r3_y;
         const real acc_3_rrrrs_z = B_2_rrrrs_zx*rrrrs_joint3_offset_x - g_r1_x;
-        /* (rrrrs-A33) angular acceleration of link 3 */
+        /* (rrrrs-A30) angular acceleration of link 3 */
         const real alpha_3_rrrrs_x = alpha_2_rrrrs_x*c_3_rrrrs + alpha_2_rrrrs_y*s_3_rrrrs -
             zeta_3_rrrrs_x;
         const real alpha_3_rrrrs_y = zeta_3_rrrrs_y + alpha_2_rrrrs_y*c_3_rrrrs -
             alpha_2_rrrrs_x*s_3_rrrrs;
         const real alpha_3_rrrrs_z = ydd_2_rrrrs - qdd_3_rrrrs;
-        /* (rrrrs-A37) acceleration tensor of link 3 */
+        /* (rrrrs-A32) acceleration tensor of link 3 */
         const real B_3_rrrrs_xy = W_3_rrrrs_xy - alpha_3_rrrrs_z;
         const real B_3_rrrrs_xz = W_3_rrrrs_xz + alpha_3_rrrrs_y;
         const real B_3_rrrrs_yx = W_3_rrrrs_xy + alpha_3_rrrrs_z;
         const real B_3_rrrrs_yz = W_3_rrrrs_yz - alpha_3_rrrrs_x;
         const real B_3_rrrrs_zx = W_3_rrrrs_xz - alpha_3_rrrrs_y;
         const real B_3_rrrrs_zy = W_3_rrrrs_yz + alpha_3_rrrrs_x;
-        /* (rrrrs-N40) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rrrrs-N53) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_rrrrs_x = B_3_rrrrs_yx*J_3_rrrrs_xz + B_3_rrrrs_zy*Sigma_3_rrrrs_yy +
             J_3_rrrrs_yz*(W_3_rrrrs_t_2 - W_3_rrrrs_t_3) + acc_3_rrrrs_z*h_3_rrrrs_y -
             B_3_rrrrs_yz*Sigma_3_rrrrs_zz - B_3_rrrrs_zx*J_3_rrrrs_xy - acc_3_rrrrs_y*h_3_rrrrs_z;
@@ -6159,21 +6204,21 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real mu_3_rrrrs_z = B_3_rrrrs_xz*J_3_rrrrs_yz + B_3_rrrrs_yx*Sigma_3_rrrrs_xx +
             J_3_rrrrs_xy*(W_3_rrrrs_t - W_3_rrrrs_t_2) + acc_3_rrrrs_y*h_3_rrrrs_x -
             B_3_rrrrs_xy*Sigma_3_rrrrs_yy - B_3_rrrrs_yz*J_3_rrrrs_xz - acc_3_rrrrs_x*h_3_rrrrs_y;
-        /* (rrrrs-A39) angular acceleration of link 4 */
+        /* (rrrrs-A34) angular acceleration of link 4 */
         const real alpha_4_rrrrs_x = alpha_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs -
             alpha_3_rrrrs_y*s_4_rrrrs;
         const real alpha_4_rrrrs_y = alpha_3_rrrrs_x*s_4_rrrrs + alpha_3_rrrrs_y*c_4_rrrrs -
             zeta_4_rrrrs_y;
         const real alpha_4_rrrrs_z = alpha_3_rrrrs_z +
             inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x);
-        /* (rrrrs-A43) acceleration tensor of link 4 */
+        /* (rrrrs-A37) acceleration tensor of link 4 */
         const real B_4_rrrrs_xy = W_4_rrrrs_xy - alpha_4_rrrrs_z;
         const real B_4_rrrrs_xz = W_4_rrrrs_xz + alpha_4_rrrrs_y;
         const real B_4_rrrrs_yx = W_4_rrrrs_xy + alpha_4_rrrrs_z;
         const real B_4_rrrrs_yz = W_4_rrrrs_yz - alpha_4_rrrrs_x;
         const real B_4_rrrrs_zx = W_4_rrrrs_xz - alpha_4_rrrrs_y;
         const real B_4_rrrrs_zy = W_4_rrrrs_yz + alpha_4_rrrrs_x;
-        /* (rrrrs-N30) inertia moment of the links that turn with link 4, about their reference points */
+        /* (rrrrs-N45) inertia moment of the links that turn with link 4, about their reference points */
         const real mu_4_rrrrs_x = B_4_rrrrs_yx*J_4_rrrrs_xz + B_4_rrrrs_zy*Sigma_4_rrrrs_yy +
             J_4_rrrrs_yz*(W_4_rrrrs_t_2 - W_4_rrrrs_t_3) + acc_4_rrrrs_z*h_4_rrrrs_y -
             B_4_rrrrs_yz*Sigma_4_rrrrs_zz - B_4_rrrrs_zx*J_4_rrrrs_xy - acc_4_rrrrs_y*h_4_rrrrs_z;
@@ -6183,19 +6228,19 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real mu_4_rrrrs_z = B_4_rrrrs_xz*J_4_rrrrs_yz + B_4_rrrrs_yx*Sigma_4_rrrrs_xx +
             J_4_rrrrs_xy*(W_4_rrrrs_t - W_4_rrrrs_t_2) + acc_4_rrrrs_y*h_4_rrrrs_x -
             B_4_rrrrs_xy*Sigma_4_rrrrs_yy - B_4_rrrrs_yz*J_4_rrrrs_xz - acc_4_rrrrs_x*h_4_rrrrs_y;
-        /* (rrrrs-N44) moment about joint 3 of the links from 3 outwards, the force at the connection
+        /* (rrrrs-N55) moment about joint 3 of the links from 3 outwards, the force at the connection
            point left out */
         const real N_3_rrrrs_x = mu_3_rrrrs_x + c_4_rrrrs*mu_4_rrrrs_x + mu_4_rrrrs_y*s_4_rrrrs;
         const real N_3_rrrrs_y = mu_3_rrrrs_y + c_4_rrrrs*mu_4_rrrrs_y - mu_4_rrrrs_x*s_4_rrrrs;
         const real N_3_rrrrs_z = mu_3_rrrrs_z + mu_4_rrrrs_z;
-        /* (rrrrs-N19) inertia force of link 3 less its weight */
+        /* (rrrrs-N13) inertia force of link 3 less its weight */
         const real f_3_rrrrs_x = B_3_rrrrs_xy*h_3_rrrrs_y + B_3_rrrrs_xz*h_3_rrrrs_z +
             acc_3_rrrrs_x*rrrrs_link3_mass - h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3);
         const real f_3_rrrrs_y = B_3_rrrrs_yx*h_3_rrrrs_x + B_3_rrrrs_yz*h_3_rrrrs_z +
             acc_3_rrrrs_y*rrrrs_link3_mass - h_3_rrrrs_y*(W_3_rrrrs_t + W_3_rrrrs_t_3);
         const real f_3_rrrrs_z = B_3_rrrrs_zx*h_3_rrrrs_x + B_3_rrrrs_zy*h_3_rrrrs_y +
             acc_3_rrrrs_z*rrrrs_link3_mass - h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2);
-        /* (rrrrs-N54) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrrrs-N63) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrrrs_x = B_2_rrrrs_yx*J_2_rrrrs_xz + B_2_rrrrs_zy*Sigma_2_rrrrs_yy +
             J_2_rrrrs_yz*(W_2_rrrrs_t_2 - W_2_rrrrs_t_3) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_t +
             g_r3_y*h_2_rrrrs_z - B_2_rrrrs_zx*J_2_rrrrs_xy - g_r1_x*h_2_rrrrs_y;
@@ -6205,27 +6250,27 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real mu_2_rrrrs_z = B_2_rrrrs_yx*Sigma_2_rrrrs_xx + J_2_rrrrs_xy*(W_2_rrrrs_t -
             W_2_rrrrs_t_2) + J_2_rrrrs_xz*alpha_1_rrrrs_t + g_r3_x*h_2_rrrrs_y -
             B_2_rrrrs_xy*Sigma_2_rrrrs_yy - J_2_rrrrs_yz*alpha_1_rrrrs_t_2 - g_r3_y*h_2_rrrrs_x;
-        /* (rrrrs-N58) moment about joint 2 of the links from 2 outwards, the force at the connection
+        /* (rrrrs-N65) moment about joint 2 of the links from 2 outwards, the force at the connection
            point left out */
         const real N_2_rrrrs_x = mu_2_rrrrs_x + N_3_rrrrs_x*c_3_rrrrs - N_3_rrrrs_y*s_3_rrrrs;
         const real N_2_rrrrs_y = mu_2_rrrrs_y + N_3_rrrrs_x*s_3_rrrrs + N_3_rrrrs_y*c_3_rrrrs -
             f_3_rrrrs_z*rrrrs_joint3_offset_x;
         const real N_2_rrrrs_z = N_3_rrrrs_z + mu_2_rrrrs_z +
             rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_y + f_3_rrrrs_x*s_3_rrrrs);
-        /* (rrrrs-N72) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrrrs-N75) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrrrs_z = J_1_rrrrs_xx*qdd_1_rrrrs - g_r1_x*h_1_rrrrs_y -
             g_r1_y*h_1_rrrrs_z;
-        /* (rrrrs-N76) moment about joint 1 of the links from 1 outwards, the force at the connection
+        /* (rrrrs-N77) moment about joint 1 of the links from 1 outwards, the force at the connection
            point left out */
         const real N_1_rrrrs_z = mu_1_rrrrs_z + N_2_rrrrs_x*s_2_rrrrs - N_2_rrrrs_y*c_2_rrrrs_t;
-        /* (rrrrs-N84) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrrrs_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_z;
         const real G_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z);
-        /* (rrrrs-N88) leg force on the platform without actuation and without the mass at the connection
+        /* (rrrrs-N87) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrrrs_x = h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - G_rrrrs_t_2 -
-            B_4_rrrrs_xy*h_4_rrrrs_y - B_4_rrrrs_xz*h_4_rrrrs_z;
+        const real c_rrrrs_x = W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_t_2 - B_4_rrrrs_xy*h_4_rrrrs_y -
+            B_4_rrrrs_xz*h_4_rrrrs_z;
         const real c_rrrrs_y = h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_t -
             B_4_rrrrs_yx*h_4_rrrrs_x - B_4_rrrrs_yz*h_4_rrrrs_z;
         const real c_rrrrs_z = h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) -
@@ -6243,7 +6288,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             c_rrrrs_in_base_z*q_rrrrs_in_base_x;
         const real R_a_t_3 = c_rrrrs_in_base_y*q_rrrrs_in_base_x -
             c_rrrrs_in_base_x*q_rrrrs_in_base_y;
-        /* (rrrrs-N94) inertia and weight of the leg along the extra freedom of joint 2 */
+        /* (rrrrs-N93) inertia and weight of the leg along the extra freedom of joint 2 */
         const real P_2_rrrrs_t = G_rrrrs_t_2*r_2_rrrrs_r1_y - G_rrrrs_t*r_2_rrrrs_r1_x;
         const real P_2_rrrrs = N_2_rrrrs_z + P_2_rrrrs_t;
         o->sum[0][k] = c_rrrrs_in_base_x;  /* total_rrrrs_x */
@@ -6592,7 +6637,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-A10) acceleration of joint 1 */
         const real qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x;
         const real qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z;
-        /* (rrrs-N11) acceleration of the reference point of link 3, less gravity */
+        /* (rrrs-N9) acceleration of the reference point of link 3, less gravity */
         const real acc_3_rrrs_x = S_ddot_rrrs_tip_x - axis_x_rrrs_axes3_x*gravity_x -
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real acc_3_rrrs_y = S_ddot_rrrs_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
@@ -6602,15 +6647,15 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-A16) angular acceleration of link 1 */
         const real alpha_1_rrrs_t = qdd_1_rrrs*s_2_rrrs;
         const real alpha_1_rrrs_t_2 = c_2_rrrs*qdd_1_rrrs;
-        /* (rrrs-A21) angular acceleration of link 2 */
+        /* (rrrs-A20) angular acceleration of link 2 */
         const real alpha_2_rrrs_x = zeta_2_rrrs_x - alpha_1_rrrs_t;
         const real alpha_2_rrrs_y = -alpha_1_rrrs_t_2 - zeta_2_rrrs_y;
-        /* (rrrs-A24) acceleration tensor of link 2 */
+        /* (rrrs-A22) acceleration tensor of link 2 */
         const real B_2_rrrs_xy = W_2_rrrs_xy + qdd_2_rrrs;
         const real B_2_rrrs_yx = W_2_rrrs_xy - qdd_2_rrrs;
         const real B_2_rrrs_zx = zeta_2_rrrs_y - alpha_2_rrrs_y;
         const real B_2_rrrs_zy = alpha_2_rrrs_x + zeta_2_rrrs_x;
-        /* (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrrs_x = B_2_rrrs_yx*J_2_rrrs_xz + B_2_rrrs_zy*Sigma_2_rrrs_yy +
             J_2_rrrs_yz*(W_2_rrrs_t_2 - W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z -
             B_2_rrrs_zx*J_2_rrrs_xy - Sigma_2_rrrs_zz*alpha_1_rrrs_t - g_r1_x_2*h_2_rrrs_y;
@@ -6620,21 +6665,21 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real mu_2_rrrs_z = B_2_rrrs_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t -
             W_2_rrrs_t_2) + g_r3_x_2*h_2_rrrs_y - B_2_rrrs_xy*Sigma_2_rrrs_yy -
             J_2_rrrs_xz*alpha_1_rrrs_t - J_2_rrrs_yz*alpha_1_rrrs_t_2 - g_r3_y_2*h_2_rrrs_x;
-        /* (rrrs-A26) angular acceleration of link 3 */
+        /* (rrrs-A24) angular acceleration of link 3 */
         const real alpha_3_rrrs_x = alpha_2_rrrs_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs -
             alpha_2_rrrs_y*s_3_rrrs;
         const real alpha_3_rrrs_y = alpha_2_rrrs_x*s_3_rrrs + alpha_2_rrrs_y*c_3_rrrs -
             zeta_3_rrrs_y;
         const real alpha_3_rrrs_z = inv_rrrs_platform_joint_offset_x*(rel_rrrs_y +
             qdd_2_rrrs*r_2_rrrs_r0_x) - qdd_2_rrrs;
-        /* (rrrs-A29) acceleration tensor of link 3 */
+        /* (rrrs-A27) acceleration tensor of link 3 */
         const real B_3_rrrs_xy = W_3_rrrs_xy - alpha_3_rrrs_z;
         const real B_3_rrrs_xz = W_3_rrrs_xz + alpha_3_rrrs_y;
         const real B_3_rrrs_yx = W_3_rrrs_xy + alpha_3_rrrs_z;
         const real B_3_rrrs_yz = W_3_rrrs_yz - alpha_3_rrrs_x;
         const real B_3_rrrs_zx = W_3_rrrs_xz - alpha_3_rrrs_y;
         const real B_3_rrrs_zy = W_3_rrrs_yz + alpha_3_rrrs_x;
-        /* (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_rrrs_x = B_3_rrrs_yx*J_3_rrrs_xz + B_3_rrrs_zy*Sigma_3_rrrs_yy +
             J_3_rrrs_yz*(W_3_rrrs_t_2 - W_3_rrrs_t_3) + acc_3_rrrs_z*h_3_rrrs_y -
             B_3_rrrs_yz*Sigma_3_rrrs_zz - B_3_rrrs_zx*J_3_rrrs_xy - acc_3_rrrs_y*h_3_rrrs_z;
@@ -6644,21 +6689,21 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real mu_3_rrrs_z = B_3_rrrs_xz*J_3_rrrs_yz + B_3_rrrs_yx*Sigma_3_rrrs_xx +
             J_3_rrrs_xy*(W_3_rrrs_t - W_3_rrrs_t_2) + acc_3_rrrs_y*h_3_rrrs_x -
             B_3_rrrs_xy*Sigma_3_rrrs_yy - B_3_rrrs_yz*J_3_rrrs_xz - acc_3_rrrs_x*h_3_rrrs_y;
-        /* (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_rrrs_x = mu_2_rrrs_x + c_3_rrrs*mu_3_rrrs_x + mu_3_rrrs_y*s_3_rrrs;
         const real N_2_rrrs_y = mu_2_rrrs_y + c_3_rrrs*mu_3_rrrs_y - mu_3_rrrs_x*s_3_rrrs;
         const real N_2_rrrs_z = mu_2_rrrs_z + mu_3_rrrs_z;
-        /* (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrrs_z = J_1_rrrs_xx*qdd_1_rrrs - g_r1_x_2*h_1_rrrs_y -
             g_r1_y_2*h_1_rrrs_z;
-        /* (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrrs_z = mu_1_rrrs_z - N_2_rrrs_x*s_2_rrrs - N_2_rrrs_y*c_2_rrrs;
-        /* (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrrs_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_z;
-        /* (rrrs-N49) leg force on the platform without actuation and without the mass at the connection
+        /* (rrrs-N55) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrrs_x = h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_xy*h_3_rrrs_y -
             B_3_rrrs_xz*h_3_rrrs_z - inv_r_2_rrrs_r0_y*(G_rrrs_t*r_2_rrrs_r0_x - N_2_rrrs_z);
@@ -7715,7 +7760,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 10, w, code, rates);
 }
 
-/* ---- joint_accelerations: 608 mul, 364 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- joint_accelerations: 603 mul, 365 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -8063,45 +8108,42 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t
         const real beta_4_rrrrs_y = beta_3_rrrrs_r0_y - omega_3_rrrrs_r0_x*qd_4_rrrrs;
         /* (rrrrs-V22) angular velocity of link 4 */
         const real omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs;
+        /* (rrrrs-V19) centripetal tensor of link 2 */
+        const real W_2_rrrrs_t = yd_2_rrrrs*yd_2_rrrrs;
+        /* (rrrrs-V21) centripetal tensor of link 3 */
+        const real W_3_rrrrs_t = omega_3_rrrrs_z*omega_3_rrrrs_z;
+        /* (rrrrs-V23) centripetal tensor of link 4 */
+        const real W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x;
+        const real W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y;
+        const real W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y;
         /* (rrrrs-A9) acceleration of the connection point at zero joint accelerations */
         const real bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs;
         const real bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x;
         const real d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs;
         const real d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs;
-        const real bias_rrrrs_t_3 = omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y +
-            d_2_rrrrs_r2_x*s_4_rrrrs) - omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x -
-            d_2_rrrrs_r2_y*s_4_rrrrs);
-        const real bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x;
-        const real bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs;
-        const real d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs;
-        const real d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs;
-        const real bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs;
-        const real bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs;
-        const real bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x -
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x;
-        const real bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs;
-        const real bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_9*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_x = bias_rrrrs_t_13*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_y + bias_rrrrs_t_8*omega_3_rrrrs_r0_y -
-            bias_rrrrs_t_12*omega_3_rrrrs_z - bias_rrrrs_t_14*omega_4_rrrrs_z -
-            bias_rrrrs_t_15*omega_3_rrrrs_r0_y - bias_rrrrs_t_7*yd_2_rrrrs;
-        const real bias_rrrrs_y = bias_rrrrs_t_15*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_11*omega_3_rrrrs_z - bias_rrrrs_t_13*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_x - bias_rrrrs_t_6*yd_2_rrrrs -
-            bias_rrrrs_t_8*omega_3_rrrrs_r0_x;
-        const real bias_rrrrs_z = bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs -
-            beta_3_rrrrs_y*s_4_rrrrs) + bias_rrrrs_t_11*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_12*omega_3_rrrrs_r0_x + bias_rrrrs_t_14*omega_3_rrrrs_r0_x +
-            bias_rrrrs_t_6*omega_3_rrrrs_r0_y + bias_rrrrs_t_7*omega_3_rrrrs_r0_x +
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-            beta_4_rrrrs_y*rrrrs_platform_joint_offset_x;
+        const real d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs;
+        const real d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs;
+        const real bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x;
+        const real bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs;
+        const real d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs;
+        const real d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs;
+        const real bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x;
+        const real bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs;
+        const real bias_rrrrs_x = W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_y - W_4_rrrrs_t_2*d_2_rrrrs_r3_x -
+            bias_rrrrs_t_5*(W_3_rrrrs_t + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t +
+            W_4_rrrrs_t_2) - rrrrs_platform_joint_offset_x*(W_4_rrrrs_t_2 +
+            omega_4_rrrrs_z*omega_4_rrrrs_z);
+        const real bias_rrrrs_y = W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_x + W_4_rrrrs_xy*rrrrs_platform_joint_offset_x -
+            W_4_rrrrs_t*d_2_rrrrs_r3_y - bias_rrrrs_t_6*(W_3_rrrrs_t + W_4_rrrrs_t) -
+            d_3_rrrrs_r1_y*(W_2_rrrrs_t + W_4_rrrrs_t);
+        const real bias_rrrrs_z = bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z -
+            beta_3_rrrrs_r0_y) + bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs +
+            omega_3_rrrrs_r0_y*omega_3_rrrrs_z - beta_3_rrrrs_y*s_4_rrrrs) +
+            rrrrs_platform_joint_offset_x*(omega_3_rrrrs_r0_x*omega_4_rrrrs_z - beta_4_rrrrs_y) +
+            2*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+            2*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs;
         /* (rrrrs-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rrrrs_x = t_ddot_x + alpha_y*q_rrrrs_in_base_z - alpha_z*q_rrrrs_in_base_y;
         const real a_p_rrrrs_y = t_ddot_y + alpha_z*q_rrrrs_in_base_x - alpha_x*q_rrrrs_in_base_z;
@@ -8453,7 +8495,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 10, w, code, accelerations);
 }
 
-/* ---- legs: 1000 mul, 715 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- legs: 988 mul, 715 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -8859,6 +8901,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         const real W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x;
         const real W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z;
+        const real W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3;
         const real W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y;
         const real W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z;
         const real W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z;
@@ -8867,43 +8910,31 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         const real bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x;
         const real d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs;
         const real d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs;
-        const real bias_rrrrs_t_3 = omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y +
-            d_2_rrrrs_r2_x*s_4_rrrrs) - omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x -
-            d_2_rrrrs_r2_y*s_4_rrrrs);
-        const real bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x;
-        const real bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs;
-        const real d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs;
-        const real d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs;
-        const real bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs;
-        const real bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs;
-        const real bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x -
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x;
-        const real bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs;
-        const real bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z;
-        const real bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_9*omega_3_rrrrs_r0_y;
-        const real bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x;
-        const real bias_rrrrs_x = bias_rrrrs_t_13*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_y + bias_rrrrs_t_8*omega_3_rrrrs_r0_y -
-            bias_rrrrs_t_12*omega_3_rrrrs_z - bias_rrrrs_t_14*omega_4_rrrrs_z -
-            bias_rrrrs_t_15*omega_3_rrrrs_r0_y - bias_rrrrs_t_7*yd_2_rrrrs;
-        const real bias_rrrrs_y = bias_rrrrs_t_15*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_11*omega_3_rrrrs_z - bias_rrrrs_t_13*omega_3_rrrrs_r0_x -
-            bias_rrrrs_t_3*omega_3_rrrrs_r0_x - bias_rrrrs_t_6*yd_2_rrrrs -
-            bias_rrrrs_t_8*omega_3_rrrrs_r0_x;
-        const real bias_rrrrs_z = bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs -
-            beta_3_rrrrs_y*s_4_rrrrs) + bias_rrrrs_t_11*omega_3_rrrrs_r0_y +
-            bias_rrrrs_t_12*omega_3_rrrrs_r0_x + bias_rrrrs_t_14*omega_3_rrrrs_r0_x +
-            bias_rrrrs_t_6*omega_3_rrrrs_r0_y + bias_rrrrs_t_7*omega_3_rrrrs_r0_x +
-            d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-            d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-            beta_4_rrrrs_y*rrrrs_platform_joint_offset_x;
-        /* (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3 */
+        const real d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs;
+        const real d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs;
+        const real bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x;
+        const real bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs;
+        const real d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs;
+        const real d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs;
+        const real bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x;
+        const real bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs;
+        const real bias_rrrrs_x = W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_y - W_4_rrrrs_t_2*d_2_rrrrs_r3_x -
+            W_4_rrrrs_xx*rrrrs_platform_joint_offset_x - bias_rrrrs_t_5*(W_3_rrrrs_t_3 +
+            W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_2 + W_4_rrrrs_t_2);
+        const real bias_rrrrs_y = W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x +
+            W_4_rrrrs_xy*d_3_rrrrs_r1_x + W_4_rrrrs_xy*rrrrs_platform_joint_offset_x -
+            W_4_rrrrs_t*d_2_rrrrs_r3_y - bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) -
+            d_3_rrrrs_r1_y*(W_2_rrrrs_t_2 + W_4_rrrrs_t);
+        const real bias_rrrrs_z = bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z -
+            beta_3_rrrrs_r0_y) + bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs +
+            omega_3_rrrrs_r0_y*omega_3_rrrrs_z - beta_3_rrrrs_y*s_4_rrrrs) +
+            rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y) +
+            2*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+            2*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs;
+        /* (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3 */
         const real a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t + W_2_rrrrs_t_2);
-        /* (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link
+        /* (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x;
         const real g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs;
@@ -8941,7 +8972,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         /* (rrrrs-A13) acceleration of joint 1 */
         const real qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x;
         const real qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z;
-        /* (rrrrs-N23) acceleration of the reference point of link 4, less gravity */
+        /* (rrrrs-N15) acceleration of the reference point of link 4, less gravity */
         const real acc_4_rrrrs_x = S_ddot_rrrrs_tip_x - axis_x_rrrrs_axes4_x*gravity_x -
             axis_x_rrrrs_axes4_y*gravity_y - axis_x_rrrrs_axes4_z*gravity_z;
         const real acc_4_rrrrs_y = S_ddot_rrrrs_tip_y - axis_y_rrrrs_axes4_in_base_x*gravity_x -
@@ -8951,35 +8982,35 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         /* (rrrrs-A22) angular acceleration of link 1 */
         const real alpha_1_rrrrs_t = qdd_1_rrrrs*s_2_rrrrs;
         const real alpha_1_rrrrs_t_2 = c_2_rrrrs_t*qdd_1_rrrrs;
-        /* (rrrrs-A28) angular acceleration of link 2 */
+        /* (rrrrs-A26) angular acceleration of link 2 */
         const real alpha_2_rrrrs_x = alpha_1_rrrrs_t - zeta_2_rrrrs_x;
         const real alpha_2_rrrrs_y = -alpha_1_rrrrs_t_2 - zeta_2_rrrrs_y;
-        /* (rrrrs-A31) acceleration tensor of link 2 */
+        /* (rrrrs-A28) acceleration tensor of link 2 */
         const real B_2_rrrrs_yx = ydd_2_rrrrs - W_2_rrrrs_xy;
         const real B_2_rrrrs_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_y;
         const real B_2_rrrrs_zy = alpha_2_rrrrs_x - zeta_2_rrrrs_x;
-        /* (rrrrs-A49) acceleration of the origin of joint 3 */
+        /* (rrrrs-A41) acceleration of the origin of joint 3 */
         const real a_o3_rrrrs_t = B_2_rrrrs_yx*rrrrs_joint3_offset_x;
-        /* (rrrrs-N13) acceleration of the reference point of link 3, less gravity */
+        /* (rrrrs-N9) acceleration of the reference point of link 3, less gravity */
         const real acc_3_rrrrs_x = a_o3_rrrrs_t*s_3_rrrrs - a_o3_rrrrs_o_t*c_3_rrrrs -
             c_3_rrrrs*g_r3_x - g_r3_y*s_3_rrrrs;
         const real acc_3_rrrrs_y = a_o3_rrrrs_o_t*s_3_rrrrs + a_o3_rrrrs_t*c_3_rrrrs +
             g_r3_x*s_3_rrrrs - c_3_rrrrs*g_r3_y;
         const real acc_3_rrrrs_z = B_2_rrrrs_zx*rrrrs_joint3_offset_x - g_r1_x;
-        /* (rrrrs-A33) angular acceleration of link 3 */
+        /* (rrrrs-A30) angular acceleration of link 3 */
         const real alpha_3_rrrrs_x = alpha_2_rrrrs_x*c_3_rrrrs + alpha_2_rrrrs_y*s_3_rrrrs -
             zeta_3_rrrrs_x;
         const real alpha_3_rrrrs_y = zeta_3_rrrrs_y + alpha_2_rrrrs_y*c_3_rrrrs -
             alpha_2_rrrrs_x*s_3_rrrrs;
         const real alpha_3_rrrrs_z = ydd_2_rrrrs - qdd_3_rrrrs;
-        /* (rrrrs-A37) acceleration tensor of link 3 */
+        /* (rrrrs-A32) acceleration tensor of link 3 */
         const real B_3_rrrrs_xy = W_3_rrrrs_xy - alpha_3_rrrrs_z;
         const real B_3_rrrrs_xz = W_3_rrrrs_xz + alpha_3_rrrrs_y;
         const real B_3_rrrrs_yx = W_3_rrrrs_xy + alpha_3_rrrrs_z;
         const real B_3_rrrrs_yz = W_3_rrrrs_yz - alpha_3_rrrrs_x;
         const real B_3_rrrrs_zx = W_3_rrrrs_xz - alpha_3_rrrrs_y;
         const real B_3_rrrrs_zy = W_3_rrrrs_yz + alpha_3_rrrrs_x;
-        /* (rrrrs-N40) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rrrrs-N53) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_rrrrs_x = B_3_rrrrs_yx*J_3_rrrrs_xz + B_3_rrrrs_zy*Sigma_3_rrrrs_yy +
             J_3_rrrrs_yz*(W_3_rrrrs_t_2 - W_3_rrrrs_t_3) + acc_3_rrrrs_z*h_3_rrrrs_y -
             B_3_rrrrs_yz*Sigma_3_rrrrs_zz - B_3_rrrrs_zx*J_3_rrrrs_xy - acc_3_rrrrs_y*h_3_rrrrs_z;
@@ -8989,21 +9020,21 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         const real mu_3_rrrrs_z = B_3_rrrrs_xz*J_3_rrrrs_yz + B_3_rrrrs_yx*Sigma_3_rrrrs_xx +
             J_3_rrrrs_xy*(W_3_rrrrs_t - W_3_rrrrs_t_2) + acc_3_rrrrs_y*h_3_rrrrs_x -
             B_3_rrrrs_xy*Sigma_3_rrrrs_yy - B_3_rrrrs_yz*J_3_rrrrs_xz - acc_3_rrrrs_x*h_3_rrrrs_y;
-        /* (rrrrs-A39) angular acceleration of link 4 */
+        /* (rrrrs-A34) angular acceleration of link 4 */
         const real alpha_4_rrrrs_x = alpha_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs -
             alpha_3_rrrrs_y*s_4_rrrrs;
         const real alpha_4_rrrrs_y = alpha_3_rrrrs_x*s_4_rrrrs + alpha_3_rrrrs_y*c_4_rrrrs -
             zeta_4_rrrrs_y;
         const real alpha_4_rrrrs_z = alpha_3_rrrrs_z +
             inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x);
-        /* (rrrrs-A43) acceleration tensor of link 4 */
+        /* (rrrrs-A37) acceleration tensor of link 4 */
         const real B_4_rrrrs_xy = W_4_rrrrs_xy - alpha_4_rrrrs_z;
         const real B_4_rrrrs_xz = W_4_rrrrs_xz + alpha_4_rrrrs_y;
         const real B_4_rrrrs_yx = W_4_rrrrs_xy + alpha_4_rrrrs_z;
         const real B_4_rrrrs_yz = W_4_rrrrs_yz - alpha_4_rrrrs_x;
         const real B_4_rrrrs_zx = W_4_rrrrs_xz - alpha_4_rrrrs_y;
         const real B_4_rrrrs_zy = W_4_rrrrs_yz + alpha_4_rrrrs_x;
-        /* (rrrrs-N30) inertia moment of the links that turn with link 4, about their reference points */
+        /* (rrrrs-N45) inertia moment of the links that turn with link 4, about their reference points */
         const real mu_4_rrrrs_x = B_4_rrrrs_yx*J_4_rrrrs_xz + B_4_rrrrs_zy*Sigma_4_rrrrs_yy +
             J_4_rrrrs_yz*(W_4_rrrrs_t_2 - W_4_rrrrs_t_3) + acc_4_rrrrs_z*h_4_rrrrs_y -
             B_4_rrrrs_yz*Sigma_4_rrrrs_zz - B_4_rrrrs_zx*J_4_rrrrs_xy - acc_4_rrrrs_y*h_4_rrrrs_z;
@@ -9013,15 +9044,15 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         const real mu_4_rrrrs_z = B_4_rrrrs_xz*J_4_rrrrs_yz + B_4_rrrrs_yx*Sigma_4_rrrrs_xx +
             J_4_rrrrs_xy*(W_4_rrrrs_t - W_4_rrrrs_t_2) + acc_4_rrrrs_y*h_4_rrrrs_x -
             B_4_rrrrs_xy*Sigma_4_rrrrs_yy - B_4_rrrrs_yz*J_4_rrrrs_xz - acc_4_rrrrs_x*h_4_rrrrs_y;
-        /* (rrrrs-N44) moment about joint 3 of the links from 3 outwards, the force at the connection
+        /* (rrrrs-N55) moment about joint 3 of the links from 3 outwards, the force at the connection
            point left out */
         const real N_3_rrrrs_x = mu_3_rrrrs_x + c_4_rrrrs*mu_4_rrrrs_x + mu_4_rrrrs_y*s_4_rrrrs;
         const real N_3_rrrrs_y = mu_3_rrrrs_y + c_4_rrrrs*mu_4_rrrrs_y - mu_4_rrrrs_x*s_4_rrrrs;
         const real N_3_rrrrs_z = mu_3_rrrrs_z + mu_4_rrrrs_z;
-        /* (rrrrs-N19) inertia force of link 3 less its weight */
+        /* (rrrrs-N13) inertia force of link 3 less its weight */
         const real f_3_rrrrs_z = B_3_rrrrs_zx*h_3_rrrrs_x + B_3_rrrrs_zy*h_3_rrrrs_y +
             acc_3_rrrrs_z*rrrrs_link3_mass - h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2);
-        /* (rrrrs-N54) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrrrs-N63) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrrrs_x = B_2_rrrrs_yx*J_2_rrrrs_xz + B_2_rrrrs_zy*Sigma_2_rrrrs_yy +
             J_2_rrrrs_yz*(W_2_rrrrs_t - W_2_rrrrs_t_2) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_t +
             g_r3_y*h_2_rrrrs_z - B_2_rrrrs_zx*J_2_rrrrs_xy - g_r1_x*h_2_rrrrs_y;
@@ -9029,30 +9060,30 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
             B_2_rrrrs_zx*Sigma_2_rrrrs_xx - J_2_rrrrs_xz*(omega_1_rrrrs_t*omega_1_rrrrs_t -
             W_2_rrrrs_t_2) - J_2_rrrrs_yz*(-W_2_rrrrs_xy - ydd_2_rrrrs) -
             Sigma_2_rrrrs_zz*alpha_1_rrrrs_t_2 - g_r3_x*h_2_rrrrs_z;
-        /* (rrrrs-N58) moment about joint 2 of the links from 2 outwards, the force at the connection
+        /* (rrrrs-N65) moment about joint 2 of the links from 2 outwards, the force at the connection
            point left out */
         const real N_2_rrrrs_x = mu_2_rrrrs_x + N_3_rrrrs_x*c_3_rrrrs - N_3_rrrrs_y*s_3_rrrrs;
         const real N_2_rrrrs_y = mu_2_rrrrs_y + N_3_rrrrs_x*s_3_rrrrs + N_3_rrrrs_y*c_3_rrrrs -
             f_3_rrrrs_z*rrrrs_joint3_offset_x;
-        /* (rrrrs-N72) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrrrs-N75) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrrrs_z = J_1_rrrrs_xx*qdd_1_rrrrs - g_r1_x*h_1_rrrrs_y -
             g_r1_y*h_1_rrrrs_z;
-        /* (rrrrs-N76) moment about joint 1 of the links from 1 outwards, the force at the connection
+        /* (rrrrs-N77) moment about joint 1 of the links from 1 outwards, the force at the connection
            point left out */
         const real N_1_rrrrs_z = mu_1_rrrrs_z + N_2_rrrrs_x*s_2_rrrrs - N_2_rrrrs_y*c_2_rrrrs_t;
-        /* (rrrrs-N84) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrrrs_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_z;
-        /* (rrrrs-N88) leg force on the platform without actuation and without the mass at the connection
+        /* (rrrrs-N87) leg force on the platform without actuation and without the mass at the connection
            point */
-        const real c_rrrrs_x = h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) -
-            B_4_rrrrs_xy*h_4_rrrrs_y - B_4_rrrrs_xz*h_4_rrrrs_z -
-            inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z);
+        const real c_rrrrs_x = W_4_rrrrs_xx*h_4_rrrrs_x - B_4_rrrrs_xy*h_4_rrrrs_y -
+            B_4_rrrrs_xz*h_4_rrrrs_z - inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x -
+            N_3_rrrrs_z);
         const real c_rrrrs_y = h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_t -
             B_4_rrrrs_yx*h_4_rrrrs_x - B_4_rrrrs_yz*h_4_rrrrs_z;
         const real c_rrrrs_z = h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) -
             B_4_rrrrs_zx*h_4_rrrrs_x - B_4_rrrrs_zy*h_4_rrrrs_y - N_1_rrrrs_z*inv_v_1_rrrrs_z;
-        /* (rrrrs-N93) leg force on the platform without actuation, the last link's mass included */
+        /* (rrrrs-N92) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrrrs_x = c_rrrrs_x - acc_4_rrrrs_x*rrrrs_link4_mass;
         const real c_true_rrrrs_y = c_rrrrs_y - acc_4_rrrrs_y*rrrrs_link4_mass;
         const real c_true_rrrrs_z = c_rrrrs_z - acc_4_rrrrs_z*rrrrs_link4_mass;
@@ -9386,7 +9417,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         /* (rrrs-A10) acceleration of joint 1 */
         const real qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x;
         const real qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z;
-        /* (rrrs-N11) acceleration of the reference point of link 3, less gravity */
+        /* (rrrs-N9) acceleration of the reference point of link 3, less gravity */
         const real acc_3_rrrs_x = S_ddot_rrrs_tip_x - axis_x_rrrs_axes3_x*gravity_x -
             axis_x_rrrs_axes3_y*gravity_y - axis_x_rrrs_axes3_z*gravity_z;
         const real acc_3_rrrs_y = S_ddot_rrrs_tip_y - axis_y_rrrs_axes3_in_base_x*gravity_x -
@@ -9396,15 +9427,15 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         /* (rrrs-A16) angular acceleration of link 1 */
         const real alpha_1_rrrs_t = qdd_1_rrrs*s_2_rrrs;
         const real alpha_1_rrrs_t_2 = c_2_rrrs*qdd_1_rrrs;
-        /* (rrrs-A21) angular acceleration of link 2 */
+        /* (rrrs-A20) angular acceleration of link 2 */
         const real alpha_2_rrrs_x = zeta_2_rrrs_x - alpha_1_rrrs_t;
         const real alpha_2_rrrs_y = -alpha_1_rrrs_t_2 - zeta_2_rrrs_y;
-        /* (rrrs-A24) acceleration tensor of link 2 */
+        /* (rrrs-A22) acceleration tensor of link 2 */
         const real B_2_rrrs_xy = W_2_rrrs_xy + qdd_2_rrrs;
         const real B_2_rrrs_yx = W_2_rrrs_xy - qdd_2_rrrs;
         const real B_2_rrrs_zx = zeta_2_rrrs_y - alpha_2_rrrs_y;
         const real B_2_rrrs_zy = alpha_2_rrrs_x + zeta_2_rrrs_x;
-        /* (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrrs_x = B_2_rrrs_yx*J_2_rrrs_xz + B_2_rrrs_zy*Sigma_2_rrrs_yy +
             J_2_rrrs_yz*(W_2_rrrs_t_2 - W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z -
             B_2_rrrs_zx*J_2_rrrs_xy - Sigma_2_rrrs_zz*alpha_1_rrrs_t - g_r1_x_2*h_2_rrrs_y;
@@ -9414,21 +9445,21 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         const real mu_2_rrrs_z = B_2_rrrs_yx*Sigma_2_rrrs_xx + J_2_rrrs_xy*(W_2_rrrs_t -
             W_2_rrrs_t_2) + g_r3_x_2*h_2_rrrs_y - B_2_rrrs_xy*Sigma_2_rrrs_yy -
             J_2_rrrs_xz*alpha_1_rrrs_t - J_2_rrrs_yz*alpha_1_rrrs_t_2 - g_r3_y_2*h_2_rrrs_x;
-        /* (rrrs-A26) angular acceleration of link 3 */
+        /* (rrrs-A24) angular acceleration of link 3 */
         const real alpha_3_rrrs_x = alpha_2_rrrs_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs -
             alpha_2_rrrs_y*s_3_rrrs;
         const real alpha_3_rrrs_y = alpha_2_rrrs_x*s_3_rrrs + alpha_2_rrrs_y*c_3_rrrs -
             zeta_3_rrrs_y;
         const real alpha_3_rrrs_z = inv_rrrs_platform_joint_offset_x*(rel_rrrs_y +
             qdd_2_rrrs*r_2_rrrs_r0_x) - qdd_2_rrrs;
-        /* (rrrs-A29) acceleration tensor of link 3 */
+        /* (rrrs-A27) acceleration tensor of link 3 */
         const real B_3_rrrs_xy = W_3_rrrs_xy - alpha_3_rrrs_z;
         const real B_3_rrrs_xz = W_3_rrrs_xz + alpha_3_rrrs_y;
         const real B_3_rrrs_yx = W_3_rrrs_xy + alpha_3_rrrs_z;
         const real B_3_rrrs_yz = W_3_rrrs_yz - alpha_3_rrrs_x;
         const real B_3_rrrs_zx = W_3_rrrs_xz - alpha_3_rrrs_y;
         const real B_3_rrrs_zy = W_3_rrrs_yz + alpha_3_rrrs_x;
-        /* (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points */
+        /* (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_rrrs_x = B_3_rrrs_yx*J_3_rrrs_xz + B_3_rrrs_zy*Sigma_3_rrrs_yy +
             J_3_rrrs_yz*(W_3_rrrs_t_2 - W_3_rrrs_t_3) + acc_3_rrrs_z*h_3_rrrs_y -
             B_3_rrrs_yz*Sigma_3_rrrs_zz - B_3_rrrs_zx*J_3_rrrs_xy - acc_3_rrrs_y*h_3_rrrs_z;
@@ -9438,21 +9469,21 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         const real mu_3_rrrs_z = B_3_rrrs_xz*J_3_rrrs_yz + B_3_rrrs_yx*Sigma_3_rrrs_xx +
             J_3_rrrs_xy*(W_3_rrrs_t - W_3_rrrs_t_2) + acc_3_rrrs_y*h_3_rrrs_x -
             B_3_rrrs_xy*Sigma_3_rrrs_yy - B_3_rrrs_yz*J_3_rrrs_xz - acc_3_rrrs_x*h_3_rrrs_y;
-        /* (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_rrrs_x = mu_2_rrrs_x + c_3_rrrs*mu_3_rrrs_x + mu_3_rrrs_y*s_3_rrrs;
         const real N_2_rrrs_y = mu_2_rrrs_y + c_3_rrrs*mu_3_rrrs_y - mu_3_rrrs_x*s_3_rrrs;
         const real N_2_rrrs_z = mu_2_rrrs_z + mu_3_rrrs_z;
-        /* (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrrs_z = J_1_rrrs_xx*qdd_1_rrrs - g_r1_x_2*h_1_rrrs_y -
             g_r1_y_2*h_1_rrrs_z;
-        /* (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrrs_z = mu_1_rrrs_z - N_2_rrrs_x*s_2_rrrs - N_2_rrrs_y*c_2_rrrs;
-        /* (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrrs_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_z;
-        /* (rrrs-N49) leg force on the platform without actuation and without the mass at the connection
+        /* (rrrs-N55) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrrs_x = h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_xy*h_3_rrrs_y -
             B_3_rrrs_xz*h_3_rrrs_z - inv_r_2_rrrs_r0_y*(G_rrrs_t*r_2_rrrs_r0_x - N_2_rrrs_z);
@@ -9460,7 +9491,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
             B_3_rrrs_yx*h_3_rrrs_x - B_3_rrrs_yz*h_3_rrrs_z;
         const real c_rrrs_z = h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_zx*h_3_rrrs_x -
             B_3_rrrs_zy*h_3_rrrs_y - N_1_rrrs_z*inv_v_1_rrrs_z;
-        /* (rrrs-N54) leg force on the platform without actuation, the last link's mass included */
+        /* (rrrs-N60) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrrs_x = c_rrrs_x - acc_3_rrrs_x*rrrs_link3_mass;
         const real c_true_rrrs_y = c_rrrs_y - acc_3_rrrs_y*rrrs_link3_mass;
         const real c_true_rrrs_z = c_rrrs_z - acc_3_rrrs_z*rrrs_link3_mass;
@@ -9748,12 +9779,12 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, con
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
-        /* (V1) potential energy */
-        const real b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs;
-        const real b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs;
         /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
         const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
         const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
+        /* (V1) potential energy */
+        const real b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs;
+        const real b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs;
         /* (rrrrs-G9) first moment of link 4 about the connection point */
         const real h_4_rrrrs_r0_x = c_4_rrrrs*h_4_rrrrs_x + h_4_rrrrs_y*s_4_rrrrs;
         const real h_4_rrrrs_r0_y = c_4_rrrrs*h_4_rrrrs_y - h_4_rrrrs_x*s_4_rrrrs;

@@ -527,56 +527,13 @@ def _prepare(p):
     inv_size_rrrrs_t_7 = 1.0/size_rrrrs_t_2
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
     inv_size_rrrrs_t_8 = 1.0/size_rrrrs_t_3
-    # (rrrrs-G7) inertia tensor of link 3 about the origin of link 3
-    J_3_rrrrs_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
-    J_3_rrrrs_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
-    J_3_rrrrs_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
-    J_3_rrrrs_t_4 = J_3_rrrrs_t + J_3_rrrrs_t_2 + J_3_rrrrs_t_3
-    J_3_rrrrs_xx = rrrrs_link3_inertia_xx - rrrrs_link3_mass*(J_3_rrrrs_t - J_3_rrrrs_t_4)
-    J_3_rrrrs_xy = (
-    rrrrs_link3_inertia_xy -
-        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    # (rrrrs-G3) inertia tensor of link 1 about the origin of link 1
+    J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x
+    J_1_rrrrs_t_2 = (
+    J_1_rrrrs_t + rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
+        rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z
     )
-    J_3_rrrrs_xz = (
-    rrrrs_link3_inertia_xz -
-        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    )
-    J_3_rrrrs_yy = rrrrs_link3_inertia_yy - rrrrs_link3_mass*(J_3_rrrrs_t_2 - J_3_rrrrs_t_4)
-    J_3_rrrrs_yz = (
-    rrrrs_link3_inertia_yz -
-        rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    )
-    J_3_rrrrs_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(J_3_rrrrs_t_3 - J_3_rrrrs_t_4)
-    # (rrrrs-G6) first moment of link 3 about the origin of link 3
-    h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
-    h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
-    h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
-    # (rrrrs-G8) connection point to the centre of mass of link 4
-    rho_tip_4_rrrrs_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
-    # (rrrrs-G10) inertia tensor of link 4 about the connection point
-    J_4_rrrrs_t = rho_tip_4_rrrrs_x*rho_tip_4_rrrrs_x
-    J_4_rrrrs_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
-    J_4_rrrrs_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
-    J_4_rrrrs_t_4 = J_4_rrrrs_t + J_4_rrrrs_t_2 + J_4_rrrrs_t_3
-    J_4_rrrrs_xx = rrrrs_link4_inertia_xx - rrrrs_link4_mass*(J_4_rrrrs_t - J_4_rrrrs_t_4)
-    J_4_rrrrs_xy = (
-    rrrrs_link4_inertia_xy - rho_tip_4_rrrrs_x*rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
-    )
-    J_4_rrrrs_xz = (
-    rrrrs_link4_inertia_xz - rho_tip_4_rrrrs_x*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
-    )
-    J_4_rrrrs_yy = rrrrs_link4_inertia_yy - rrrrs_link4_mass*(J_4_rrrrs_t_2 - J_4_rrrrs_t_4)
-    J_4_rrrrs_yz = (
-    rrrrs_link4_inertia_yz -
-        rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
-    )
-    J_4_rrrrs_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(J_4_rrrrs_t_3 - J_4_rrrrs_t_4)
-    # (rrrrs-V11) reciprocal vector 3
-    inv_rrrrs_platform_joint_offset_x = 1.0/rrrrs_platform_joint_offset_x
-    # (rrrrs-G9) first moment of link 4 about the connection point
-    h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass
-    h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
-    h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t - J_1_rrrrs_t_2)
     # (rrrrs-G5) inertia tensor of link 2 about the origin of link 2
     J_2_rrrrs_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x
     J_2_rrrrs_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y
@@ -597,17 +554,79 @@ def _prepare(p):
         rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
     )
     J_2_rrrrs_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(J_2_rrrrs_t_3 - J_2_rrrrs_t_4)
+    # (rrrrs-G7) inertia tensor of link 3 about the origin of link 3
+    J_3_rrrrs_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
+    J_3_rrrrs_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
+    J_3_rrrrs_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
+    J_3_rrrrs_t_4 = J_3_rrrrs_t + J_3_rrrrs_t_2 + J_3_rrrrs_t_3
+    J_3_rrrrs_xx = rrrrs_link3_inertia_xx - rrrrs_link3_mass*(J_3_rrrrs_t - J_3_rrrrs_t_4)
+    J_3_rrrrs_xy = (
+    rrrrs_link3_inertia_xy -
+        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    )
+    J_3_rrrrs_xz = (
+    rrrrs_link3_inertia_xz -
+        rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    )
+    J_3_rrrrs_yy = rrrrs_link3_inertia_yy - rrrrs_link3_mass*(J_3_rrrrs_t_2 - J_3_rrrrs_t_4)
+    J_3_rrrrs_yz = (
+    rrrrs_link3_inertia_yz -
+        rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    )
+    J_3_rrrrs_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(J_3_rrrrs_t_3 - J_3_rrrrs_t_4)
+    # (rrrrs-G8) connection point to the centre of mass of link 4
+    rho_tip_4_rrrrs_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
+    # (rrrrs-G10) inertia tensor of link 4 about the connection point
+    J_4_rrrrs_t = rho_tip_4_rrrrs_x*rho_tip_4_rrrrs_x
+    J_4_rrrrs_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
+    J_4_rrrrs_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
+    J_4_rrrrs_t_4 = J_4_rrrrs_t + J_4_rrrrs_t_2 + J_4_rrrrs_t_3
+    J_4_rrrrs_xx = rrrrs_link4_inertia_xx - rrrrs_link4_mass*(J_4_rrrrs_t - J_4_rrrrs_t_4)
+    J_4_rrrrs_xy = (
+    rrrrs_link4_inertia_xy - rho_tip_4_rrrrs_x*rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
+    )
+    J_4_rrrrs_xz = (
+    rrrrs_link4_inertia_xz - rho_tip_4_rrrrs_x*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    )
+    J_4_rrrrs_yy = rrrrs_link4_inertia_yy - rrrrs_link4_mass*(J_4_rrrrs_t_2 - J_4_rrrrs_t_4)
+    J_4_rrrrs_yz = (
+    rrrrs_link4_inertia_yz -
+        rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    )
+    J_4_rrrrs_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(J_4_rrrrs_t_3 - J_4_rrrrs_t_4)
+    # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_rrrrs_zz = J_3_rrrrs_zz + J_4_rrrrs_zz
+    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
+    h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
+    h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
+    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_rrrrs_t = 0.5*rrrrs_link3_mass
+    Jc_2_rrrrs_t_2 = Jc_2_rrrrs_t*rrrrs_joint3_offset_x
+    Jc_2_rrrrs_t_3 = h_3_rrrrs_z*rrrrs_joint3_offset_x
     # (rrrrs-G4) first moment of link 2 about the origin of link 2
     h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
     h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
     h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
-    # (rrrrs-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x
-    J_1_rrrrs_t_2 = (
-    J_1_rrrrs_t + rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
-        rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z
-    )
-    J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t - J_1_rrrrs_t_2)
+    # (rrrrs-N33) first moment of the links from 2 outwards
+    hc_2_rrrrs_t = rrrrs_joint3_offset_x*rrrrs_link3_mass
+    # (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrrrs_t = rrrrs_joint2_offset_x*(Jc_2_rrrrs_t + 0.5*rrrrs_link2_mass)
+    # (rrrrs-G9) first moment of link 4 about the connection point
+    h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass
+    h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
+    h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
+    # (rrrrs-V11) reciprocal vector 3
+    inv_rrrrs_platform_joint_offset_x = 1.0/rrrrs_platform_joint_offset_x
+    # (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_rrrrs_t = J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x
+    d_Gamma_3_rrrrs_y = d_Gamma_3_rrrrs_t + h_4_rrrrs_x
+    # (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_rrrrs_t = d_Gamma_3_rrrrs_y*inv_rrrrs_platform_joint_offset_x
+    # (rrrrs-N18) coefficient of the acceleration in: inertia force of link 4 from its turning about its reference point
+    d_phi_4_rrrrs_t = h_4_rrrrs_y*inv_rrrrs_platform_joint_offset_x
+    # (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrrrs_yy = -d_G_rrrrs_t - h_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x
     # (L2) first moment about the platform origin
     h_star_t_4 = rrrrs_link4_mass*rrrrs_platform_point_x
     h_star_t_5 = rrrrs_link4_mass*rrrrs_platform_point_y
@@ -619,7 +638,7 @@ def _prepare(p):
     J_star_t_14 = rrrrs_link4_mass*(size_rrrrs_t_5 - size_rrrrs_t_7)
     J_star_t_15 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z
     J_star_t_16 = rrrrs_link4_mass*(size_rrrrs_t_6 - size_rrrrs_t_7)
-    # (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r0_x = (
     gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy + gravity_z*rrrrs_base_frame_zy
     )
@@ -629,21 +648,21 @@ def _prepare(p):
     g_r0_z = (
     gravity_x*rrrrs_base_frame_xx + gravity_y*rrrrs_base_frame_yx + gravity_z*rrrrs_base_frame_zx
     )
-    # (rrrrs-N38) half the trace of that inertia tensor
+    # (rrrrs-N51) half the trace of that inertia tensor
     trace_J_3_rrrrs_rrrrs = 0.5*J_3_rrrrs_xx + 0.5*J_3_rrrrs_yy + 0.5*J_3_rrrrs_zz
-    # (rrrrs-N39) second moment of mass of the links that turn with link 3
+    # (rrrrs-N52) second moment of mass of the links that turn with link 3
     Sigma_3_rrrrs_xx = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_xx
     Sigma_3_rrrrs_yy = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_yy
     Sigma_3_rrrrs_zz = trace_J_3_rrrrs_rrrrs - J_3_rrrrs_zz
-    # (rrrrs-N28) half the trace of that inertia tensor
+    # (rrrrs-N43) half the trace of that inertia tensor
     trace_J_4_rrrrs_rrrrs = 0.5*J_4_rrrrs_xx + 0.5*J_4_rrrrs_yy + 0.5*J_4_rrrrs_zz
-    # (rrrrs-N29) second moment of mass of the links that turn with link 4
+    # (rrrrs-N44) second moment of mass of the links that turn with link 4
     Sigma_4_rrrrs_xx = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_xx
     Sigma_4_rrrrs_yy = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_yy
     Sigma_4_rrrrs_zz = trace_J_4_rrrrs_rrrrs - J_4_rrrrs_zz
-    # (rrrrs-N52) half the trace of that inertia tensor
+    # (rrrrs-N61) half the trace of that inertia tensor
     trace_J_2_rrrrs_rrrrs = 0.5*J_2_rrrrs_xx + 0.5*J_2_rrrrs_yy + 0.5*J_2_rrrrs_zz
-    # (rrrrs-N53) second moment of mass of the links that turn with link 2
+    # (rrrrs-N62) second moment of mass of the links that turn with link 2
     Sigma_2_rrrrs_xx = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_xx
     Sigma_2_rrrrs_yy = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_yy
     Sigma_2_rrrrs_zz = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_zz
@@ -701,6 +720,13 @@ def _prepare(p):
     inv_size_rrrs_t_6 = 1.0/size_rrrs_t_2
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
     inv_size_rrrs_t_7 = 1.0/size_rrrs_t_3
+    # (rrrs-G3) inertia tensor of link 1 about the origin of link 1
+    J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
+    J_1_rrrs_t_2 = (
+    J_1_rrrs_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
+        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    )
+    J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t - J_1_rrrs_t_2)
     # (rrrs-G5) inertia tensor of link 2 about the origin of link 2
     J_2_rrrs_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
     J_2_rrrs_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
@@ -721,10 +747,6 @@ def _prepare(p):
         rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
     )
     J_2_rrrs_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_rrrs_t_3 - J_2_rrrs_t_4)
-    # (rrrs-G4) first moment of link 2 about the origin of link 2
-    h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
-    h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
-    h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
     # (rrrs-G6) connection point to the centre of mass of link 3
     rho_tip_3_rrrs_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
     # (rrrs-G8) inertia tensor of link 3 about the connection point
@@ -745,19 +767,30 @@ def _prepare(p):
         rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_z*rrrs_link3_mass
     )
     J_3_rrrs_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_rrrs_t_3 - J_3_rrrs_t_4)
-    # (rrrs-V9) reciprocal vector 3
-    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_rrrs_zz = J_2_rrrs_zz + J_3_rrrs_zz
+    # (rrrs-G4) first moment of link 2 about the origin of link 2
+    h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
+    h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
+    h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
+    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrrs_t = 0.5*rrrs_joint2_offset_x*rrrs_link2_mass
     # (rrrs-G7) first moment of link 3 about the connection point
     h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass
     h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
     h_3_rrrs_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
-    # (rrrs-G3) inertia tensor of link 1 about the origin of link 1
-    J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
-    J_1_rrrs_t_2 = (
-    J_1_rrrs_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
-        rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
+    # (rrrs-V9) reciprocal vector 3
+    inv_rrrs_platform_joint_offset_x = 1.0/rrrs_platform_joint_offset_x
+    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrrs_t = J_3_rrrs_zz*inv_rrrs_platform_joint_offset_x
+    d_Gamma_2_rrrs_y = d_Gamma_2_rrrs_t + h_3_rrrs_x
+    # (rrrs-N12) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    d_phi_3_rrrs_t = h_3_rrrs_y*inv_rrrs_platform_joint_offset_x
+    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrrs_yy = (
+    -d_Gamma_2_rrrs_y*inv_rrrs_platform_joint_offset_x -
+        h_3_rrrs_x*inv_rrrs_platform_joint_offset_x
     )
-    J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t - J_1_rrrs_t_2)
     # (L2) first moment about the platform origin
     h_star_t_7 = rrrs_link3_mass*rrrs_platform_point_x
     h_star_t_8 = rrrs_link3_mass*rrrs_platform_point_y
@@ -779,15 +812,15 @@ def _prepare(p):
     g_r0_z_2 = (
     gravity_x*rrrs_base_frame_xx + gravity_y*rrrs_base_frame_yx + gravity_z*rrrs_base_frame_zx
     )
-    # (rrrs-N24) half the trace of that inertia tensor
+    # (rrrs-N34) half the trace of that inertia tensor
     trace_J_2_rrrs_rrrs = 0.5*J_2_rrrs_xx + 0.5*J_2_rrrs_yy + 0.5*J_2_rrrs_zz
-    # (rrrs-N25) second moment of mass of the links that turn with link 2
+    # (rrrs-N35) second moment of mass of the links that turn with link 2
     Sigma_2_rrrs_xx = trace_J_2_rrrs_rrrs - J_2_rrrs_xx
     Sigma_2_rrrs_yy = trace_J_2_rrrs_rrrs - J_2_rrrs_yy
     Sigma_2_rrrs_zz = trace_J_2_rrrs_rrrs - J_2_rrrs_zz
-    # (rrrs-N16) half the trace of that inertia tensor
+    # (rrrs-N27) half the trace of that inertia tensor
     trace_J_3_rrrs_rrrs = 0.5*J_3_rrrs_xx + 0.5*J_3_rrrs_yy + 0.5*J_3_rrrs_zz
-    # (rrrs-N17) second moment of mass of the links that turn with link 3
+    # (rrrs-N28) second moment of mass of the links that turn with link 3
     Sigma_3_rrrs_xx = trace_J_3_rrrs_rrrs - J_3_rrrs_xx
     Sigma_3_rrrs_yy = trace_J_3_rrrs_rrrs - J_3_rrrs_yy
     Sigma_3_rrrs_zz = trace_J_3_rrrs_rrrs - J_3_rrrs_zz
@@ -875,13 +908,16 @@ def _prepare(p):
             "J_3_rrrrs_xz": np.broadcast_to(J_3_rrrrs_xz, _rrrrs),
             "J_3_rrrrs_yy": np.broadcast_to(J_3_rrrrs_yy, _rrrrs),
             "J_3_rrrrs_yz": np.broadcast_to(J_3_rrrrs_yz, _rrrrs),
-            "J_3_rrrrs_zz": np.broadcast_to(J_3_rrrrs_zz, _rrrrs),
             "J_4_rrrrs_xx": np.broadcast_to(J_4_rrrrs_xx, _rrrrs),
             "J_4_rrrrs_xy": np.broadcast_to(J_4_rrrrs_xy, _rrrrs),
             "J_4_rrrrs_xz": np.broadcast_to(J_4_rrrrs_xz, _rrrrs),
             "J_4_rrrrs_yy": np.broadcast_to(J_4_rrrrs_yy, _rrrrs),
             "J_4_rrrrs_yz": np.broadcast_to(J_4_rrrrs_yz, _rrrrs),
             "J_4_rrrrs_zz": np.broadcast_to(J_4_rrrrs_zz, _rrrrs),
+            "Jc_1_rrrrs_t": np.broadcast_to(Jc_1_rrrrs_t, _rrrrs),
+            "Jc_2_rrrrs_t_2": np.broadcast_to(Jc_2_rrrrs_t_2, _rrrrs),
+            "Jc_2_rrrrs_t_3": np.broadcast_to(Jc_2_rrrrs_t_3, _rrrrs),
+            "Jc_3_rrrrs_zz": np.broadcast_to(Jc_3_rrrrs_zz, _rrrrs),
             "Kd_3_rrrrs_t": np.broadcast_to(Kd_3_rrrrs_t, _rrrrs),
             "Kd_3_rrrrs_t_2": np.broadcast_to(Kd_3_rrrrs_t_2, _rrrrs),
             "Sigma_2_rrrrs_xx": np.broadcast_to(Sigma_2_rrrrs_xx, _rrrrs),
@@ -898,6 +934,11 @@ def _prepare(p):
             "b_rrrrs_r0_z": np.broadcast_to(b_rrrrs_r0_z, _rrrrs),
             "branch_1_rrrrs": np.broadcast_to(branch_1_rrrrs, _rrrrs),
             "branch_3_rrrrs": np.broadcast_to(branch_3_rrrrs, _rrrrs),
+            "d_G_rrrrs_t": np.broadcast_to(d_G_rrrrs_t, _rrrrs),
+            "d_Gamma_3_rrrrs_t": np.broadcast_to(d_Gamma_3_rrrrs_t, _rrrrs),
+            "d_Gamma_3_rrrrs_y": np.broadcast_to(d_Gamma_3_rrrrs_y, _rrrrs),
+            "d_c_rrrrs_yy": np.broadcast_to(d_c_rrrrs_yy, _rrrrs),
+            "d_phi_4_rrrrs_t": np.broadcast_to(d_phi_4_rrrrs_t, _rrrrs),
             "g_r0_x": np.broadcast_to(g_r0_x, _rrrrs),
             "g_r0_y": np.broadcast_to(g_r0_y, _rrrrs),
             "g_r0_z": np.broadcast_to(g_r0_z, _rrrrs),
@@ -913,6 +954,7 @@ def _prepare(p):
             "h_4_rrrrs_x": np.broadcast_to(h_4_rrrrs_x, _rrrrs),
             "h_4_rrrrs_y": np.broadcast_to(h_4_rrrrs_y, _rrrrs),
             "h_4_rrrrs_z": np.broadcast_to(h_4_rrrrs_z, _rrrrs),
+            "hc_2_rrrrs_t": np.broadcast_to(hc_2_rrrrs_t, _rrrrs),
             "inv_rrrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrrs_platform_joint_offset_x, _rrrrs),
             "inv_size_rrrrs_t_7": np.broadcast_to(inv_size_rrrrs_t_7, _rrrrs),
             "inv_size_rrrrs_t_8": np.broadcast_to(inv_size_rrrrs_t_8, _rrrrs),
@@ -952,13 +994,14 @@ def _prepare(p):
             "J_2_rrrs_xz": np.broadcast_to(J_2_rrrs_xz, _rrrs),
             "J_2_rrrs_yy": np.broadcast_to(J_2_rrrs_yy, _rrrs),
             "J_2_rrrs_yz": np.broadcast_to(J_2_rrrs_yz, _rrrs),
-            "J_2_rrrs_zz": np.broadcast_to(J_2_rrrs_zz, _rrrs),
             "J_3_rrrs_xx": np.broadcast_to(J_3_rrrs_xx, _rrrs),
             "J_3_rrrs_xy": np.broadcast_to(J_3_rrrs_xy, _rrrs),
             "J_3_rrrs_xz": np.broadcast_to(J_3_rrrs_xz, _rrrs),
             "J_3_rrrs_yy": np.broadcast_to(J_3_rrrs_yy, _rrrs),
             "J_3_rrrs_yz": np.broadcast_to(J_3_rrrs_yz, _rrrs),
             "J_3_rrrs_zz": np.broadcast_to(J_3_rrrs_zz, _rrrs),
+            "Jc_1_rrrs_t": np.broadcast_to(Jc_1_rrrs_t, _rrrs),
+            "Jc_2_rrrs_zz": np.broadcast_to(Jc_2_rrrs_zz, _rrrs),
             "Kd_2_rrrs_t": np.broadcast_to(Kd_2_rrrs_t, _rrrs),
             "Kd_2_rrrs_t_2": np.broadcast_to(Kd_2_rrrs_t_2, _rrrs),
             "Sigma_2_rrrs_xx": np.broadcast_to(Sigma_2_rrrs_xx, _rrrs),
@@ -971,6 +1014,10 @@ def _prepare(p):
             "b_rrrs_r0_y": np.broadcast_to(b_rrrs_r0_y, _rrrs),
             "branch_1_rrrs": np.broadcast_to(branch_1_rrrs, _rrrs),
             "branch_2_rrrs": np.broadcast_to(branch_2_rrrs, _rrrs),
+            "d_Gamma_2_rrrs_t": np.broadcast_to(d_Gamma_2_rrrs_t, _rrrs),
+            "d_Gamma_2_rrrs_y": np.broadcast_to(d_Gamma_2_rrrs_y, _rrrs),
+            "d_c_rrrs_yy": np.broadcast_to(d_c_rrrs_yy, _rrrs),
+            "d_phi_3_rrrs_t": np.broadcast_to(d_phi_3_rrrs_t, _rrrs),
             "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrrs),
             "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrrs),
             "g_r0_z_2": np.broadcast_to(g_r0_z_2, _rrrs),
@@ -1165,7 +1212,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 1606 mul, 1208 add, 12 div, 6 sqrt, 2 trig
+# dynamics: 1547 mul, 1205 add, 12 div, 6 sqrt, 2 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -1277,19 +1324,21 @@ def _dynamics_rrrrs(c, k, x, s, f):
     (
     J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
         J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy, J_3_rrrrs_yz,
-        J_3_rrrrs_zz, J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz,
-        J_4_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy,
-        Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy, Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx,
-        Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs, branch_3_rrrrs, g_r0_x, g_r0_y,
-        g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x,
-        h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z,
-        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t,
-        rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-        rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-        rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-        rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
-        rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz, J_4_rrrrs_zz,
+        Jc_1_rrrrs_t, Jc_2_rrrrs_t_2, Jc_2_rrrrs_t_3, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
+        Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy,
+        Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs,
+        branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y, d_c_rrrrs_yy,
+        d_phi_4_rrrrs_t, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x,
+        h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
+        h_4_rrrrs_z, hc_2_rrrrs_t, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7,
+        inv_size_rrrrs_t_8, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+        rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
+        rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
+        rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
+        rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
+        rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs,
+        size_rrrrs_t_8,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs = x
     (
@@ -1370,6 +1419,8 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-V5) velocity of the connection point per rate of joint 1
     e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
     e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
+    e_1_rrrrs_r3_x = c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs
+    e_1_rrrrs_r3_y = c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs
     # (rrrrs-V4) from joint 1 to the connection point, along the links
     r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
     r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
@@ -1377,9 +1428,8 @@ def _dynamics_rrrrs(c, k, x, s, f):
     r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
     # (rrrrs-V5) velocity of the connection point per rate of joint 1
     v_1_rrrrs_z = (
-    (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-        r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-        e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+    e_1_rrrrs_r3_x*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
+        e_1_rrrrs_r3_y*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
@@ -1427,95 +1477,96 @@ def _dynamics_rrrrs(c, k, x, s, f):
     axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
     )
+    # (rrrrs-G10) inertia tensor of link 4 about the connection point
+    J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs
+    _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs
+    J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs
+    _x_2 = J_4_rrrrs_t_2 + J_4_rrrrs_yy*s_4_rrrrs
+    _x_3 = J_4_rrrrs_xz*c_4_rrrrs + J_4_rrrrs_yz*s_4_rrrrs
+    _y = J_4_rrrrs_yz*c_4_rrrrs - J_4_rrrrs_xz*s_4_rrrrs
+    # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_rrrrs_xx = J_3_rrrrs_xx + _x*c_4_rrrrs + _x_2*s_4_rrrrs
+    Jc_3_rrrrs_xy = J_3_rrrrs_xy + _x_2*c_4_rrrrs - _x*s_4_rrrrs
+    Jc_3_rrrrs_xz = J_3_rrrrs_xz + _x_3
+    Jc_3_rrrrs_yy = (
+    J_3_rrrrs_yy + c_4_rrrrs*(J_4_rrrrs_yy*c_4_rrrrs - J_4_rrrrs_t) - s_4_rrrrs*(J_4_rrrrs_t_2 -
+        J_4_rrrrs_xx*s_4_rrrrs)
+    )
+    Jc_3_rrrrs_yz = J_3_rrrrs_yz + _y
+    Jc_3_rrrrs_t = Jc_3_rrrrs_xy*s_3_rrrrs
+    _x_4 = Jc_3_rrrrs_xx*c_3_rrrrs - Jc_3_rrrrs_t
+    Jc_3_rrrrs_t_2 = Jc_3_rrrrs_xy*c_3_rrrrs
+    _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs
+    _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs
+    _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs
+    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
+    h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
+    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x)
+    Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t
+    Jc_2_rrrrs_xy = (
+    J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs - h_3_rrrrs_r0_y*rrrrs_joint3_offset_x
+    )
+    # (rrrrs-N33) first moment of the links from 2 outwards
+    hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t
+    hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y
+    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
+    _y_3 = (
+    s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t -
+        _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) - c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs -
+        c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 + c_3_rrrrs*(Jc_3_rrrrs_t +
+        Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 + Jc_3_rrrrs_xx*s_3_rrrrs)))
+    )
+    # (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrrrs_t_2 = (
+    rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs - c_2_rrrrs_t*hc_2_rrrrs_y)
+    )
+    # (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit
+    L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x
+    # (rrrrs-V9) reciprocal vector 1
     inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-    # (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_rrrrs_t = inv_v_1_rrrrs_z*s_2_rrrrs
-    d_alpha_1_rrrrs_t_2 = c_2_rrrrs_t*inv_v_1_rrrrs_z
-    # (rrrrs-A50) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d_a_o3_rrrrs_t = d_alpha_1_rrrrs_t_2*rrrrs_joint3_offset_x
     # (rrrrs-V10) reciprocal vector 2
     inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-    # (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1
-    _x = c_3_rrrrs*d_alpha_1_rrrrs_t - d_alpha_1_rrrrs_t_2*s_3_rrrrs
-    _y = -c_3_rrrrs*d_alpha_1_rrrrs_t_2 - d_alpha_1_rrrrs_t*s_3_rrrrs
-    # (rrrrs-V10) reciprocal vector 2
-    w_3_rrrrs_t = c_4_rrrrs*inv_r_3_rrrrs_r0_y
-    w_3_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*s_4_rrrrs
     # (rrrrs-V11) reciprocal vector 3
     w_4_rrrrs_t = inv_r_3_rrrrs_r0_y*inv_rrrrs_platform_joint_offset_x*r_3_rrrrs_r0_x
-    # (rrrrs-A34) coefficient of the acceleration in: angular acceleration of link 3
-    _x_2 = _x*c_4_rrrrs - _y*s_4_rrrrs
-    _y_2 = _x*s_4_rrrrs + _y*c_4_rrrrs
-    # (rrrrs-A40) coefficient of the acceleration in: angular acceleration of link 4
-    d_alpha_4_rrrrs_zx = w_4_rrrrs_t - c_4_rrrrs*w_3_rrrrs_t - s_4_rrrrs*w_3_rrrrs_t_2
-    d_alpha_4_rrrrs_zy = (
-    inv_rrrrs_platform_joint_offset_x + c_4_rrrrs*w_3_rrrrs_t_2 - s_4_rrrrs*w_3_rrrrs_t
+    # (rrrrs-N80) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrrrs_z = (
+    e_1_rrrrs_r3_x*h_4_rrrrs_y + inv_v_1_rrrrs_z*(J_1_rrrrs_xx + _y_3) -
+        e_1_rrrrs_r3_y*h_4_rrrrs_x
     )
-    # (rrrrs-N31) coefficient of the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-    d_mu_4_rrrrs_t = J_4_rrrrs_xz*_x_2 + J_4_rrrrs_yz*_y_2
-    d_mu_4_rrrrs_xz = h_4_rrrrs_y + J_4_rrrrs_xx*_x_2 + J_4_rrrrs_xy*_y_2
-    d_mu_4_rrrrs_yz = J_4_rrrrs_xy*_x_2 + J_4_rrrrs_yy*_y_2 - h_4_rrrrs_x
-    d_mu_4_rrrrs_zx = J_4_rrrrs_zz*d_alpha_4_rrrrs_zx - h_4_rrrrs_y
-    d_mu_4_rrrrs_zy = h_4_rrrrs_x + J_4_rrrrs_zz*d_alpha_4_rrrrs_zy
-    # (rrrrs-N45) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d_N_3_rrrrs_xz = (
-    J_3_rrrrs_xx*_x + J_3_rrrrs_xy*_y + c_4_rrrrs*d_mu_4_rrrrs_xz + d_a_o3_rrrrs_t*h_3_rrrrs_y +
-        d_mu_4_rrrrs_yz*s_4_rrrrs
+    # (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_rrrrs_t_2 = d_Gamma_3_rrrrs_t*r_3_rrrrs_r0_x
+    d_Gamma_3_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(Jc_3_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
+    # (rrrrs-N48) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d_Gamma_4_rrrrs_t = (
+    inv_v_1_rrrrs_z*(s_2_rrrrs*(_x_3*c_3_rrrrs - _y*s_3_rrrrs) - c_2_rrrrs_t*(_x_3*s_3_rrrrs +
+        _y*c_3_rrrrs))
     )
-    d_N_3_rrrrs_yz = (
-    J_3_rrrrs_xy*_x + J_3_rrrrs_yy*_y + c_4_rrrrs*d_mu_4_rrrrs_yz - d_a_o3_rrrrs_t*h_3_rrrrs_x -
-        d_mu_4_rrrrs_xz*s_4_rrrrs
+    d_Gamma_4_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(J_4_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
+    # (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_rrrrs_t_2 = d_Gamma_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
+    d_G_rrrrs_xx = d_Gamma_4_rrrrs_x*w_4_rrrrs_t - d_Gamma_3_rrrrs_x*inv_r_3_rrrrs_r0_y
+    d_G_rrrrs_xy = d_Gamma_3_rrrrs_y*w_4_rrrrs_t - d_Gamma_3_rrrrs_y*inv_r_3_rrrrs_r0_y
+    d_G_rrrrs_xz = (
+    d_Gamma_4_rrrrs_t*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*inv_v_1_rrrrs_z*(_x_6*s_2_rrrrs -
+        _y_2*c_2_rrrrs_t)
     )
-    d_N_3_rrrrs_zx = (
-    c_4_rrrrs*d_mu_4_rrrrs_zx + d_mu_4_rrrrs_zy*s_4_rrrrs - J_3_rrrrs_zz*w_3_rrrrs_t
-    )
-    d_N_3_rrrrs_zy = (
-    J_3_rrrrs_zz*w_3_rrrrs_t_2 + c_4_rrrrs*d_mu_4_rrrrs_zy - d_mu_4_rrrrs_zx*s_4_rrrrs
-    )
-    d_N_3_rrrrs_zz = d_mu_4_rrrrs_t + J_3_rrrrs_xz*_x + J_3_rrrrs_yz*_y
-    # (rrrrs-N20) coefficient of the acceleration in: inertia force of link 3 less its weight
-    _y_3 = h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t - c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t
-    _y_4 = c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t_2 - h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t_2
-    # (rrrrs-N59) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_rrrrs_zx = (
-    c_3_rrrrs*d_N_3_rrrrs_zx + rrrrs_joint3_offset_x*(_y_3*c_3_rrrrs - _y_4*s_3_rrrrs) -
-        d_N_3_rrrrs_zy*s_3_rrrrs
-    )
-    d_N_2_rrrrs_zy = (
-    c_3_rrrrs*d_N_3_rrrrs_zy + d_N_3_rrrrs_zx*s_3_rrrrs + rrrrs_joint3_offset_x*(_y_3*s_3_rrrrs +
-        _y_4*c_3_rrrrs)
-    )
-    d_N_2_rrrrs_t = (
-    c_2_rrrrs_t*(J_2_rrrrs_xy*d_alpha_1_rrrrs_t + c_3_rrrrs*d_N_3_rrrrs_yz +
-        d_N_3_rrrrs_xz*s_3_rrrrs - J_2_rrrrs_yy*d_alpha_1_rrrrs_t_2 -
-        rrrrs_joint3_offset_x*(_x*h_3_rrrrs_y + d_a_o3_rrrrs_t*rrrrs_link3_mass - _y*h_3_rrrrs_x))
-    )
-    # (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_rrrrs_t = d_mu_4_rrrrs_zy*inv_rrrrs_platform_joint_offset_x
-    d_G_rrrrs_t_2 = d_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
-    d_G_rrrrs_xx = (
-    d_mu_4_rrrrs_zx*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zx -
-        d_N_3_rrrrs_zy*s_4_rrrrs)
-    )
-    d_G_rrrrs_xy = (
-    d_mu_4_rrrrs_zy*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zy +
-        d_N_3_rrrrs_zx*s_4_rrrrs)
-    )
-    d_G_rrrrs_xz = d_mu_4_rrrrs_t*w_4_rrrrs_t - d_N_3_rrrrs_zz*inv_r_3_rrrrs_r0_y
-    # (rrrrs-N89) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrrrs_xx = d_alpha_4_rrrrs_zx*h_4_rrrrs_y - d_G_rrrrs_xx
-    d_c_rrrrs_xy = d_alpha_4_rrrrs_zy*h_4_rrrrs_y - d_G_rrrrs_xy
-    d_c_rrrrs_xz = -d_G_rrrrs_xz - _y_2*h_4_rrrrs_z
-    d_c_rrrrs_yz = _x_2*h_4_rrrrs_z - d_G_rrrrs_t_2
-    d_c_rrrrs_zz = (
-    _y_2*h_4_rrrrs_x - _x_2*h_4_rrrrs_y - inv_v_1_rrrrs_z*(J_1_rrrrs_xx*inv_v_1_rrrrs_z +
-        s_2_rrrrs*(J_2_rrrrs_xx*d_alpha_1_rrrrs_t + c_3_rrrrs*d_N_3_rrrrs_xz -
-        J_2_rrrrs_xy*d_alpha_1_rrrrs_t_2 - d_N_3_rrrrs_yz*s_3_rrrrs) - d_N_2_rrrrs_t)
-    )
-    # (rrrrs-N91) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrrrs_t = d_G_rrrrs_t + d_c_rrrrs_xx + d_alpha_4_rrrrs_zy*h_4_rrrrs_x
+    # (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 4
+    d_alpha_4_rrrrs_t = e_1_rrrrs_r3_x*inv_v_1_rrrrs_z
+    d_alpha_4_rrrrs_t_2 = e_1_rrrrs_r3_y*inv_v_1_rrrrs_z
+    # (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrrrs_xx = h_4_rrrrs_y*(w_4_rrrrs_t - inv_r_3_rrrrs_r0_y) - d_G_rrrrs_xx
+    d_c_rrrrs_xy = d_phi_4_rrrrs_t - d_G_rrrrs_xy
+    d_c_rrrrs_xz = -d_G_rrrrs_xz - d_alpha_4_rrrrs_t_2*h_4_rrrrs_z
+    d_c_rrrrs_yz = d_alpha_4_rrrrs_t*h_4_rrrrs_z - d_G_rrrrs_t_2
+    # (rrrrs-N90) inertia of the leg at the connection point, without the mass gathered there
+    Q_rrrrs_t = d_c_rrrrs_xx - d_c_rrrrs_yy
     Q_rrrrs_t_2 = 0.5*Q_rrrrs_t
-    Q_rrrrs_t_3 = d_c_rrrrs_xx - d_c_rrrrs_zz
+    Q_rrrrs_t_3 = (
+    d_c_rrrrs_xx + d_Gamma_1_rrrrs_z*inv_v_1_rrrrs_z + d_alpha_4_rrrrs_t*h_4_rrrrs_y -
+        d_alpha_4_rrrrs_t_2*h_4_rrrrs_x
+    )
     Q_rrrrs_t_4 = 0.5*Q_rrrrs_t_3
     Q_rrrrs_t_5 = (
     axis_x_rrrrs_axes4_x*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_x*d_c_rrrrs_yz -
@@ -1659,6 +1710,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
     W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
     W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
+    W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
     W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
     W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
     W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
@@ -1667,42 +1719,32 @@ def _dynamics_rrrrs(c, k, x, s, f):
     bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
     d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
     d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-    bias_rrrrs_t_3 = (
-    omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs) -
-        omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs)
-    )
-    bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x
-    bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs
-    d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs
-    d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs
-    bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs
-    bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs
-    bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x - d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x
-    bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs
-    bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z
-    bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z
-    bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x - bias_rrrrs_t_9*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x
-    bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x
+    d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
+    d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
+    bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
+    bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
+    d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
+    d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
+    bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
+    bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
     bias_rrrrs_x = (
-    bias_rrrrs_t_13*omega_3_rrrrs_r0_y + bias_rrrrs_t_3*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_8*omega_3_rrrrs_r0_y - bias_rrrrs_t_12*omega_3_rrrrs_z -
-        bias_rrrrs_t_14*omega_4_rrrrs_z - bias_rrrrs_t_15*omega_3_rrrrs_r0_y -
-        bias_rrrrs_t_7*yd_2_rrrrs
+    W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
+        W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
+        bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 +
+        W_4_rrrrs_t_2)
     )
     bias_rrrrs_y = (
-    bias_rrrrs_t_15*omega_3_rrrrs_r0_x - bias_rrrrs_t_11*omega_3_rrrrs_z -
-        bias_rrrrs_t_13*omega_3_rrrrs_r0_x - bias_rrrrs_t_3*omega_3_rrrrs_r0_x -
-        bias_rrrrs_t_6*yd_2_rrrrs - bias_rrrrs_t_8*omega_3_rrrrs_r0_x
+    W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
+        W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
+        bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 +
+        W_4_rrrrs_t)
     )
     bias_rrrrs_z = (
-    bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs - beta_3_rrrrs_y*s_4_rrrrs) +
-        bias_rrrrs_t_11*omega_3_rrrrs_r0_y + bias_rrrrs_t_12*omega_3_rrrrs_r0_x +
-        bias_rrrrs_t_14*omega_3_rrrrs_r0_x + bias_rrrrs_t_6*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_7*omega_3_rrrrs_r0_x + d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-        d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-        beta_4_rrrrs_y*rrrrs_platform_joint_offset_x
+    bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
+        bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
+        beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y)
+        + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+        2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
     )
     # (rrrrs-A1) centripetal acceleration of the connection point
     u_1_rrrrs_x = S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
@@ -1727,19 +1769,19 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-A15) remainder without the acceleration in: acceleration of joint 1
     qdd_3_rrrrs_o = inv_r_3_rrrrs_r0_y*rel_rrrrs_o_x
     qdd_1_rrrrs_o = inv_v_1_rrrrs_z*rel_rrrrs_o_z
-    # (rrrrs-A25) remainder without the acceleration in: angular acceleration of link 1
+    # (rrrrs-A23) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_rrrrs_o_t = qdd_1_rrrrs_o*s_2_rrrrs
     alpha_1_rrrrs_o_t_2 = c_2_rrrrs_t*qdd_1_rrrrs_o
-    # (rrrrs-A30) remainder without the acceleration in: angular acceleration of link 2
+    # (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x
     alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y
-    # (rrrrs-A32) acceleration tensor of link 2
+    # (rrrrs-A29) acceleration tensor of link 2
     B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y
     B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x
-    # (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3
+    # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3)
     a_o3_rrrrs_o_t_2 = W_2_rrrrs_xy*rrrrs_joint3_offset_x
-    # (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
     g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
     g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
@@ -1749,17 +1791,17 @@ def _dynamics_rrrrs(c, k, x, s, f):
     acc_3_rrrrs_o_x = -g_r4_x - a_o3_rrrrs_o_t*c_3_rrrrs - a_o3_rrrrs_o_t_2*s_3_rrrrs
     acc_3_rrrrs_o_y = a_o3_rrrrs_o_t*s_3_rrrrs - g_r4_y - a_o3_rrrrs_o_t_2*c_3_rrrrs
     acc_3_rrrrs_o_z = B_2_rrrrs_o_zx*rrrrs_joint3_offset_x - g_r1_x
-    # (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_rrrrs_o_x = alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs - zeta_3_rrrrs_x
     alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs - alpha_2_rrrrs_o_x*s_3_rrrrs
-    # (rrrrs-A38) acceleration tensor of link 3
+    # (rrrrs-A33) acceleration tensor of link 3
     B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o
     B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y
     B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o
     B_3_rrrrs_o_yz = W_3_rrrrs_yz - alpha_3_rrrrs_o_x
     B_3_rrrrs_o_zx = W_3_rrrrs_xz - alpha_3_rrrrs_o_y
     B_3_rrrrs_o_zy = W_3_rrrrs_yz + alpha_3_rrrrs_o_x
-    # (rrrrs-N43) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrrs-N54) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrrs_o_x = (
     B_3_rrrrs_o_yx*J_3_rrrrs_xz + B_3_rrrrs_o_zy*Sigma_3_rrrrs_yy + J_3_rrrrs_yz*(W_3_rrrrs_t_2 -
         W_3_rrrrs_t_3) + acc_3_rrrrs_o_z*h_3_rrrrs_y - B_3_rrrrs_o_yz*Sigma_3_rrrrs_zz -
@@ -1775,11 +1817,11 @@ def _dynamics_rrrrs(c, k, x, s, f):
         W_3_rrrrs_t_2) + acc_3_rrrrs_o_y*h_3_rrrrs_x - B_3_rrrrs_o_xy*Sigma_3_rrrrs_yy -
         B_3_rrrrs_o_yz*J_3_rrrrs_xz - acc_3_rrrrs_o_x*h_3_rrrrs_y
     )
-    # (rrrrs-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    # (rrrrs-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     acc_4_rrrrs_o_x = u_1_rrrrs_tip_x + g_r4_y*s_4_rrrrs - c_4_rrrrs*g_r4_x
     acc_4_rrrrs_o_y = u_1_rrrrs_tip_y - c_4_rrrrs*g_r4_y - g_r4_x*s_4_rrrrs
     acc_4_rrrrs_o_z = u_1_rrrrs_tip_z - g_r1_x
-    # (rrrrs-A42) remainder without the acceleration in: angular acceleration of link 4
+    # (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 4
     alpha_4_rrrrs_o_x = (
     alpha_3_rrrrs_o_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_o_y*s_4_rrrrs
     )
@@ -1788,14 +1830,14 @@ def _dynamics_rrrrs(c, k, x, s, f):
     inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y + qdd_3_rrrrs_o*r_3_rrrrs_r0_x) -
         qdd_3_rrrrs_o
     )
-    # (rrrrs-A44) acceleration tensor of link 4
+    # (rrrrs-A38) acceleration tensor of link 4
     B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z
     B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y
     B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z
     B_4_rrrrs_o_yz = W_4_rrrrs_yz - alpha_4_rrrrs_o_x
     B_4_rrrrs_o_zx = W_4_rrrrs_xz - alpha_4_rrrrs_o_y
     B_4_rrrrs_o_zy = W_4_rrrrs_yz + alpha_4_rrrrs_o_x
-    # (rrrrs-N33) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
     mu_4_rrrrs_o_x = (
     B_4_rrrrs_o_yx*J_4_rrrrs_xz + B_4_rrrrs_o_zy*Sigma_4_rrrrs_yy + J_4_rrrrs_yz*(W_4_rrrrs_t_2 -
         W_4_rrrrs_t_3) + acc_4_rrrrs_o_z*h_4_rrrrs_y - B_4_rrrrs_o_yz*Sigma_4_rrrrs_zz -
@@ -1811,11 +1853,11 @@ def _dynamics_rrrrs(c, k, x, s, f):
         W_4_rrrrs_t_2) + acc_4_rrrrs_o_y*h_4_rrrrs_x - B_4_rrrrs_o_xy*Sigma_4_rrrrs_yy -
         B_4_rrrrs_o_yz*J_4_rrrrs_xz - acc_4_rrrrs_o_x*h_4_rrrrs_y
     )
-    # (rrrrs-N47) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrs-N56) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_rrrrs_o_x = mu_3_rrrrs_o_x + c_4_rrrrs*mu_4_rrrrs_o_x + mu_4_rrrrs_o_y*s_4_rrrrs
     N_3_rrrrs_o_y = mu_3_rrrrs_o_y + c_4_rrrrs*mu_4_rrrrs_o_y - mu_4_rrrrs_o_x*s_4_rrrrs
     N_3_rrrrs_o_z = mu_3_rrrrs_o_z + mu_4_rrrrs_o_z
-    # (rrrrs-N22) remainder without the acceleration in: inertia force of link 3 less its weight
+    # (rrrrs-N14) remainder without the acceleration in: inertia force of link 3 less its weight
     f_3_rrrrs_o_x = (
     B_3_rrrrs_o_xy*h_3_rrrrs_y + B_3_rrrrs_o_xz*h_3_rrrrs_z + acc_3_rrrrs_o_x*rrrrs_link3_mass -
         h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3)
@@ -1828,7 +1870,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     B_3_rrrrs_o_zx*h_3_rrrrs_x + B_3_rrrrs_o_zy*h_3_rrrrs_y + acc_3_rrrrs_o_z*rrrrs_link3_mass -
         h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
     )
-    # (rrrrs-N57) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrs-N64) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrrs_o_x = (
     B_2_rrrrs_o_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2 - W_2_rrrrs_t_3) +
         Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t + g_r3_y*h_2_rrrrs_z - B_2_rrrrs_o_zx*J_2_rrrrs_xy -
@@ -1844,7 +1886,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
         Sigma_2_rrrrs_yy*W_2_rrrrs_xy + g_r3_x*h_2_rrrrs_y - J_2_rrrrs_yz*alpha_1_rrrrs_o_t_2 -
         Sigma_2_rrrrs_xx*W_2_rrrrs_xy - g_r3_y*h_2_rrrrs_x
     )
-    # (rrrrs-N61) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrs-N66) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrrs_o_x = mu_2_rrrrs_o_x + N_3_rrrrs_o_x*c_3_rrrrs - N_3_rrrrs_o_y*s_3_rrrrs
     N_2_rrrrs_o_y = (
     mu_2_rrrrs_o_y + N_3_rrrrs_o_x*s_3_rrrrs + N_3_rrrrs_o_y*c_3_rrrrs -
@@ -1854,16 +1896,16 @@ def _dynamics_rrrrs(c, k, x, s, f):
     N_3_rrrrs_o_z + mu_2_rrrrs_o_z + rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_o_y +
         f_3_rrrrs_o_x*s_3_rrrrs)
     )
-    # (rrrrs-N75) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrrrs-N76) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrrs_o_z = J_1_rrrrs_xx*qdd_1_rrrrs_o - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-    # (rrrrs-N79) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrs-N78) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrrs_o_z = mu_1_rrrrs_o_z + N_2_rrrrs_o_x*s_2_rrrrs - N_2_rrrrs_o_y*c_2_rrrrs_t
-    # (rrrrs-N87) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrrs-N86) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrrs_o_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_o_z
     G_rrrrs_o_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_o_t*r_3_rrrrs_r0_x - N_3_rrrrs_o_z)
-    # (rrrrs-N90) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrs-N89) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrrrs_o_x = (
-    h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - G_rrrrs_o_t_2 - B_4_rrrrs_o_xy*h_4_rrrrs_y -
+    W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_o_t_2 - B_4_rrrrs_o_xy*h_4_rrrrs_y -
         B_4_rrrrs_o_xz*h_4_rrrrs_z
     )
     c_rrrrs_o_y = (
@@ -1874,7 +1916,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_o_zx*h_4_rrrrs_x -
         B_4_rrrrs_o_zy*h_4_rrrrs_y - N_1_rrrrs_o_z*inv_v_1_rrrrs_z
     )
-    # (rrrrs-N92) velocity and gravity terms of the leg force
+    # (rrrrs-N91) velocity and gravity terms of the leg force
     U_rrrrs_in_base_x = (
     -axis_x_rrrrs_axes4_x*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_x*c_rrrrs_o_y -
         axis_z_rrrrs_axes4_in_base_x*c_rrrrs_o_z
@@ -1891,25 +1933,20 @@ def _dynamics_rrrrs(c, k, x, s, f):
     Z_a_t = U_rrrrs_in_base_z*q_rrrrs_in_base_y - U_rrrrs_in_base_y*q_rrrrs_in_base_z
     Z_a_t_2 = U_rrrrs_in_base_x*q_rrrrs_in_base_z - U_rrrrs_in_base_z*q_rrrrs_in_base_x
     Z_a_t_3 = U_rrrrs_in_base_y*q_rrrrs_in_base_x - U_rrrrs_in_base_x*q_rrrrs_in_base_y
-    # (rrrrs-N97) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x
     P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t
-    # (rrrrs-N67) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrrrs_r0_x = c_3_rrrrs*d_N_2_rrrrs_zx + d_N_2_rrrrs_zy*s_3_rrrrs
-    d_Gamma_2_rrrrs_r0_y = c_3_rrrrs*d_N_2_rrrrs_zy - d_N_2_rrrrs_zx*s_3_rrrrs
-    # (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N70) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(L_c3_2_rrrrs_z - d_Gamma_3_rrrrs_t_2)
+    # (rrrrs-N94) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     d_P_2_rrrrs_x = (
-    c_4_rrrrs*d_Gamma_2_rrrrs_r0_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y - d_Gamma_2_rrrrs_r0_y*s_4_rrrrs
-        - d_mu_4_rrrrs_zx*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x
+    d_Gamma_2_rrrrs_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
+        d_Gamma_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x
     )
-    d_P_2_rrrrs_y = (
-    c_4_rrrrs*d_Gamma_2_rrrrs_r0_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y + d_Gamma_2_rrrrs_r0_x*s_4_rrrrs
-        - d_G_rrrrs_t*r_2_rrrrs_r1_x
-    )
+    d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y - d_G_rrrrs_t*r_2_rrrrs_r1_x
     d_P_2_rrrrs_z = (
-    d_N_3_rrrrs_zz + J_2_rrrrs_xz*d_alpha_1_rrrrs_t + d_G_rrrrs_xz*r_2_rrrrs_r1_y +
-        rrrrs_joint3_offset_x*(_y*h_3_rrrrs_z*s_3_rrrrs - _x*c_3_rrrrs*h_3_rrrrs_z) -
-        J_2_rrrrs_yz*d_alpha_1_rrrrs_t_2 - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
+    d_G_rrrrs_xz*r_2_rrrrs_r1_y + inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 -
+        Jc_2_rrrrs_t_3) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
     )
     d_P_2_rrrrs_in_base_x = (
     axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
@@ -1935,37 +1972,27 @@ def _dynamics_rrrrs(c, k, x, s, f):
     )
     # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
     d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y
-    # (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 3
-    d1_alpha_3_rrrrs_z = 1.0 - d1_qdd_3_rrrrs
-    # (rrrrs-N42) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d1_mu_3_rrrrs_z = (
-    J_3_rrrrs_zz*d1_alpha_3_rrrrs_z + bias_rrrrs_t_4*h_3_rrrrs_x - bias_rrrrs_t_5*h_3_rrrrs_y
-    )
-    # (rrrrs-A41) coefficient of the acceleration in: angular acceleration of link 4
-    d1_alpha_4_rrrrs_z = (
-    d1_alpha_3_rrrrs_z + inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
+    # (rrrrs-N59) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d1_Gamma_3_rrrrs_t = (
+    J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
         r_2_rrrrs_r1_x)
     )
-    # (rrrrs-N32) coefficient of the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-    d1_mu_4_rrrrs_t = J_4_rrrrs_zz*d1_alpha_4_rrrrs_z
-    # (rrrrs-N46) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d1_N_3_rrrrs_z = d1_mu_3_rrrrs_z + d1_mu_4_rrrrs_t
-    # (rrrrs-N21) coefficient of the acceleration in: inertia force of link 3 less its weight
-    d1_f_3_rrrrs_x = bias_rrrrs_t_5*rrrrs_link3_mass - d1_alpha_3_rrrrs_z*h_3_rrrrs_y
-    d1_f_3_rrrrs_y = bias_rrrrs_t_4*rrrrs_link3_mass + d1_alpha_3_rrrrs_z*h_3_rrrrs_x
-    # (rrrrs-N60) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d1_N_2_rrrrs_z = (
-    J_2_rrrrs_zz + d1_N_3_rrrrs_z + rrrrs_joint3_offset_x*(c_3_rrrrs*d1_f_3_rrrrs_y +
-        d1_f_3_rrrrs_x*s_3_rrrrs)
+    d1_Gamma_3_rrrrs = L_c3_2_rrrrs_z + d1_Gamma_3_rrrrs_t - Jc_3_rrrrs_zz*d1_qdd_3_rrrrs
+    # (rrrrs-N49) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d1_Gamma_4_rrrrs = J_4_rrrrs_zz + d1_Gamma_3_rrrrs_t - J_4_rrrrs_zz*d1_qdd_3_rrrrs
+    # (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d1_G_rrrrs_t = d1_Gamma_4_rrrrs*inv_rrrrs_platform_joint_offset_x
+    # (rrrrs-N71) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d1_Gamma_2_rrrrs = (
+    J_2_rrrrs_zz + Jc_2_rrrrs_t_4 + Jc_3_rrrrs_zz + d1_Gamma_3_rrrrs_t -
+        L_c3_2_rrrrs_z*d1_qdd_3_rrrrs
     )
-    # (rrrrs-N86) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d1_G_rrrrs_t = d1_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
-    # (rrrrs-N96) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     d1_P_2_rrrrs_t = (
-    inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x - d1_N_3_rrrrs_z) -
+    inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x - d1_Gamma_3_rrrrs) -
         d1_G_rrrrs_t*r_2_rrrrs_r1_x
     )
-    d1_P_2_rrrrs = d1_N_2_rrrrs_z + d1_P_2_rrrrs_t
+    d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t
     # (rrrrs-V9) reciprocal vector 1
     w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
     w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
@@ -1975,13 +2002,13 @@ def _dynamics_rrrrs(c, k, x, s, f):
     H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 - q_rrrrs_in_base_x*w_1_rrrrs_t_5
     H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 - q_rrrrs_in_base_y*w_1_rrrrs_t_3
     # (rrrrs-V10) reciprocal vector 2
-    w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y
-    w_3_rrrrs_t_4 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y
-    w_3_rrrrs_t_5 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y
+    w_3_rrrrs_t = axis_x_rrrrs_axes4_x*inv_r_3_rrrrs_r0_y
+    w_3_rrrrs_t_2 = axis_x_rrrrs_axes4_y*inv_r_3_rrrrs_r0_y
+    w_3_rrrrs_t_3 = axis_x_rrrrs_axes4_z*inv_r_3_rrrrs_r0_y
     # (M10) moment of the column's unit force about the platform origin
-    H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_4 - q_rrrrs_in_base_y*w_3_rrrrs_t_5
-    H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_5 - q_rrrrs_in_base_z*w_3_rrrrs_t_3
-    H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t_3 - q_rrrrs_in_base_x*w_3_rrrrs_t_4
+    H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
+    H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
+    H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
     ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (Q_rrrrs_t_12, Q_rrrrs_t_13, Q_rrrrs_t_14, Q_rrrrs_t_16, Q_rrrrs_t_17, Q_rrrrs_t_19,
@@ -1992,7 +2019,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
         d_P_2_rrrrs_in_base_y, d_P_2_rrrrs_in_base_z, d_P_2_rrrrs_in_base_z, M_ya_2_rrrrs_x,
         M_ya_2_rrrrs_x, M_ya_2_rrrrs_y, M_ya_2_rrrrs_y, M_ya_2_rrrrs_z, M_ya_2_rrrrs_z,
         d1_P_2_rrrrs, w_1_rrrrs_t_3, w_1_rrrrs_t_4, w_1_rrrrs_t_5, H_a_1_rrrrs_x, H_a_1_rrrrs_y,
-        H_a_1_rrrrs_z, 1.0, -w_3_rrrrs_t_3, -w_3_rrrrs_t_4, -w_3_rrrrs_t_5, H_a_3_rrrrs_x,
+        H_a_1_rrrrs_z, 1.0, -w_3_rrrrs_t, -w_3_rrrrs_t_2, -w_3_rrrrs_t_3, H_a_3_rrrrs_x,
         H_a_3_rrrrs_y, H_a_3_rrrrs_z, -d1_qdd_3_rrrrs,),
     )
 
@@ -2000,12 +2027,13 @@ def _dynamics_rrrrs(c, k, x, s, f):
 def _dynamics_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_2_rrrs_zz,
-        J_3_rrrs_xx, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Kd_2_rrrs_t,
-        Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz, Sigma_3_rrrs_xx,
-        Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs, g_r0_x_2, g_r0_y_2,
-        g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x,
-        h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
+    J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_3_rrrs_xx,
+        J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_1_rrrs_t,
+        Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
+        Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs,
+        branch_2_rrrs, d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, g_r0_x_2,
+        g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z,
+        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
         inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
@@ -2126,62 +2154,60 @@ def _dynamics_rrrs(c, k, x, s, f):
     axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
     )
+    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs
+    _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs
+    J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs
+    _x_8 = J_3_rrrs_t_2 + J_3_rrrs_yy*s_3_rrrs
+    _x_9 = J_3_rrrs_xz*c_3_rrrs + J_3_rrrs_yz*s_3_rrrs
+    _y_4 = J_3_rrrs_yz*c_3_rrrs - J_3_rrrs_xz*s_3_rrrs
+    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_rrrs_xy = J_2_rrrs_xy + _x_8*c_3_rrrs - _x_7*s_3_rrrs
+    _y_5 = (
+    -c_2_rrrs*(-Jc_2_rrrs_xy*s_2_rrrs - c_2_rrrs*(J_2_rrrs_yy + c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs -
+        J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 - J_3_rrrs_xx*s_3_rrrs))) -
+        s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx + _x_7*c_3_rrrs + _x_8*s_3_rrrs))
+    )
+    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y - h_2_rrrs_x*s_2_rrrs)
+    # (rrrs-V7) reciprocal vector 1
     inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
     # (rrrs-V8) reciprocal vector 2
     inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-    # (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_rrrs_t = inv_v_1_rrrs_z*s_2_rrrs
-    d_alpha_1_rrrs_t_2 = c_2_rrrs*inv_v_1_rrrs_z
-    # (rrrs-V8) reciprocal vector 2
-    w_2_rrrs_t = c_3_rrrs*inv_r_2_rrrs_r0_y
-    w_2_rrrs_t_2 = inv_r_2_rrrs_r0_y*s_3_rrrs
     # (rrrs-V9) reciprocal vector 3
     w_3_rrrs_t = inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*r_2_rrrs_r0_x
-    # (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = d_alpha_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*d_alpha_1_rrrs_t
-    _y_5 = -c_3_rrrs*d_alpha_1_rrrs_t_2 - d_alpha_1_rrrs_t*s_3_rrrs
-    # (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_rrrs_zx = w_3_rrrs_t - c_3_rrrs*w_2_rrrs_t - s_3_rrrs*w_2_rrrs_t_2
-    d_alpha_3_rrrs_zy = (
-    inv_rrrs_platform_joint_offset_x + c_3_rrrs*w_2_rrrs_t_2 - s_3_rrrs*w_2_rrrs_t
+    # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrrs_z = (
+    e_1_rrrs_r2_x*h_3_rrrs_y + inv_v_1_rrrs_z*(J_1_rrrs_xx + _y_5) - e_1_rrrs_r2_y*h_3_rrrs_x
     )
-    # (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_rrrs_t = J_3_rrrs_xz*_x_3 + J_3_rrrs_yz*_y_5
-    d_mu_3_rrrs_xz = h_3_rrrs_y + J_3_rrrs_xx*_x_3 + J_3_rrrs_xy*_y_5
-    d_mu_3_rrrs_yz = J_3_rrrs_xy*_x_3 + J_3_rrrs_yy*_y_5 - h_3_rrrs_x
-    d_mu_3_rrrs_zx = J_3_rrrs_zz*d_alpha_3_rrrs_zx - h_3_rrrs_y
-    d_mu_3_rrrs_zy = h_3_rrrs_x + J_3_rrrs_zz*d_alpha_3_rrrs_zy
-    # (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_rrrs_zx = c_3_rrrs*d_mu_3_rrrs_zx + d_mu_3_rrrs_zy*s_3_rrrs - J_2_rrrs_zz*w_2_rrrs_t
-    d_N_2_rrrs_zy = J_2_rrrs_zz*w_2_rrrs_t_2 + c_3_rrrs*d_mu_3_rrrs_zy - d_mu_3_rrrs_zx*s_3_rrrs
-    _y_6 = (
-    -c_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_yz - J_2_rrrs_xy*d_alpha_1_rrrs_t -
-        J_2_rrrs_yy*d_alpha_1_rrrs_t_2 - d_mu_3_rrrs_xz*s_3_rrrs) -
-        s_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_xz + d_mu_3_rrrs_yz*s_3_rrrs - J_2_rrrs_xx*d_alpha_1_rrrs_t
-        - J_2_rrrs_xy*d_alpha_1_rrrs_t_2)
-    )
-    # (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrrs_t_2 = d_Gamma_2_rrrs_t*r_2_rrrs_r0_x
+    d_Gamma_2_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(Jc_2_rrrs_zz - d_Gamma_2_rrrs_t_2)
+    # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_rrrs_t = inv_v_1_rrrs_z*(-_x_9*s_2_rrrs - _y_4*c_2_rrrs)
+    d_Gamma_3_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(J_3_rrrs_zz - d_Gamma_2_rrrs_t_2)
+    # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_rrrs_t = e_1_rrrs_r2_x*inv_v_1_rrrs_z
+    d_alpha_3_rrrs_t_2 = e_1_rrrs_r2_y*inv_v_1_rrrs_z
+    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_rrrs_xx = (
-    d_alpha_3_rrrs_zx*h_3_rrrs_y + inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zx -
-        d_N_2_rrrs_zy*s_3_rrrs) - d_mu_3_rrrs_zx*w_3_rrrs_t
+    d_Gamma_2_rrrs_x*inv_r_2_rrrs_r0_y + h_3_rrrs_y*(w_3_rrrs_t - inv_r_2_rrrs_r0_y) -
+        d_Gamma_3_rrrs_x*w_3_rrrs_t
     )
     d_c_rrrs_xy = (
-    d_alpha_3_rrrs_zy*h_3_rrrs_y + inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zy +
-        d_N_2_rrrs_zx*s_3_rrrs) - d_mu_3_rrrs_zy*w_3_rrrs_t
+    d_phi_3_rrrs_t + d_Gamma_2_rrrs_y*inv_r_2_rrrs_r0_y - d_Gamma_2_rrrs_y*w_3_rrrs_t
     )
     d_c_rrrs_xz = (
-    inv_r_2_rrrs_r0_y*(d_mu_3_rrrs_t - J_2_rrrs_xz*d_alpha_1_rrrs_t -
-        J_2_rrrs_yz*d_alpha_1_rrrs_t_2) - _y_5*h_3_rrrs_z - d_mu_3_rrrs_t*w_3_rrrs_t
+    inv_r_2_rrrs_r0_y*inv_v_1_rrrs_z*(-c_2_rrrs*(J_2_rrrs_yz + _y_4) - s_2_rrrs*(J_2_rrrs_xz +
+        _x_9)) - d_Gamma_3_rrrs_t*w_3_rrrs_t - d_alpha_3_rrrs_t_2*h_3_rrrs_z
     )
-    d_c_rrrs_yz = _x_3*h_3_rrrs_z - d_mu_3_rrrs_t*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrrs_t = (
-    d_c_rrrs_xx + d_alpha_3_rrrs_zy*h_3_rrrs_x + d_mu_3_rrrs_zy*inv_rrrs_platform_joint_offset_x
-    )
+    d_c_rrrs_yz = d_alpha_3_rrrs_t*h_3_rrrs_z - d_Gamma_3_rrrs_t*inv_rrrs_platform_joint_offset_x
+    # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
+    Q_rrrs_t = d_c_rrrs_xx - d_c_rrrs_yy
     Q_rrrs_t_2 = 0.5*Q_rrrs_t
     Q_rrrs_t_3 = (
-    d_c_rrrs_xx + _x_3*h_3_rrrs_y + inv_v_1_rrrs_z*(_y_6 + J_1_rrrs_xx*inv_v_1_rrrs_z) -
-        _y_5*h_3_rrrs_x
+    d_c_rrrs_xx + d_Gamma_1_rrrs_z*inv_v_1_rrrs_z + d_alpha_3_rrrs_t*h_3_rrrs_y -
+        d_alpha_3_rrrs_t_2*h_3_rrrs_x
     )
     Q_rrrs_t_4 = 0.5*Q_rrrs_t_3
     Q_rrrs_t_5 = (
@@ -2343,18 +2369,18 @@ def _dynamics_rrrs(c, k, x, s, f):
     g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs
     g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs
     g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2
-    # (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1
+    # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_rrrs_o_t = qdd_1_rrrs_o*s_2_rrrs
     alpha_1_rrrs_o_t_2 = c_2_rrrs*qdd_1_rrrs_o
-    # (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2
+    # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t
     alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y
-    # (rrrs-A25) acceleration tensor of link 2
+    # (rrrs-A23) acceleration tensor of link 2
     B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o
     B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o
     B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y
     B_2_rrrs_o_zy = alpha_2_rrrs_o_x + zeta_2_rrrs_x
-    # (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrs_o_x = (
     B_2_rrrs_o_yx*J_2_rrrs_xz + B_2_rrrs_o_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
         W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_o_zx*J_2_rrrs_xy -
@@ -2370,11 +2396,11 @@ def _dynamics_rrrs(c, k, x, s, f):
         - B_2_rrrs_o_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_o_t -
         J_2_rrrs_yz*alpha_1_rrrs_o_t_2 - g_r3_y_2*h_2_rrrs_x
     )
-    # (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_rrrs_o_x = u_1_rrrs_tip_x + g_r3_y_2*s_3_rrrs - c_3_rrrs*g_r3_x_2
     acc_3_rrrs_o_y = u_1_rrrs_tip_y - c_3_rrrs*g_r3_y_2 - g_r3_x_2*s_3_rrrs
     acc_3_rrrs_o_z = u_1_rrrs_tip_z - g_r1_x_2
-    # (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_rrrs_o_x = (
     alpha_2_rrrs_o_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_o_y*s_3_rrrs
     )
@@ -2382,14 +2408,14 @@ def _dynamics_rrrs(c, k, x, s, f):
     alpha_3_rrrs_o_z = (
     inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y + qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o
     )
-    # (rrrs-A30) acceleration tensor of link 3
+    # (rrrs-A28) acceleration tensor of link 3
     B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z
     B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y
     B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z
     B_3_rrrs_o_yz = W_3_rrrs_yz - alpha_3_rrrs_o_x
     B_3_rrrs_o_zx = W_3_rrrs_xz - alpha_3_rrrs_o_y
     B_3_rrrs_o_zy = W_3_rrrs_yz + alpha_3_rrrs_o_x
-    # (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrs_o_x = (
     B_3_rrrs_o_yx*J_3_rrrs_xz + B_3_rrrs_o_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
         W_3_rrrs_t_3) + acc_3_rrrs_o_z*h_3_rrrs_y - B_3_rrrs_o_yz*Sigma_3_rrrs_zz -
@@ -2405,17 +2431,17 @@ def _dynamics_rrrs(c, k, x, s, f):
         W_3_rrrs_t_2) + acc_3_rrrs_o_y*h_3_rrrs_x - B_3_rrrs_o_xy*Sigma_3_rrrs_yy -
         B_3_rrrs_o_yz*J_3_rrrs_xz - acc_3_rrrs_o_x*h_3_rrrs_y
     )
-    # (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrs_o_x = mu_2_rrrs_o_x + c_3_rrrs*mu_3_rrrs_o_x + mu_3_rrrs_o_y*s_3_rrrs
     N_2_rrrs_o_y = mu_2_rrrs_o_y + c_3_rrrs*mu_3_rrrs_o_y - mu_3_rrrs_o_x*s_3_rrrs
     N_2_rrrs_o_z = mu_2_rrrs_o_z + mu_3_rrrs_o_z
-    # (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrs_o_z = J_1_rrrs_xx*qdd_1_rrrs_o - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-    # (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrs_o_z = mu_1_rrrs_o_z - N_2_rrrs_o_x*s_2_rrrs - N_2_rrrs_o_y*c_2_rrrs
-    # (rrrs-N48) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrs_o_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_o_z
-    # (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrrs_o_x = (
     h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_o_xy*h_3_rrrs_y - B_3_rrrs_o_xz*h_3_rrrs_z
         - inv_r_2_rrrs_r0_y*(G_rrrs_o_t*r_2_rrrs_r0_x - N_2_rrrs_o_z)
@@ -2428,7 +2454,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_o_zx*h_3_rrrs_x - B_3_rrrs_o_zy*h_3_rrrs_y -
         N_1_rrrs_o_z*inv_v_1_rrrs_z
     )
-    # (rrrs-N53) velocity and gravity terms of the leg force
+    # (rrrs-N59) velocity and gravity terms of the leg force
     U_rrrs_in_base_x = (
     -axis_x_rrrs_axes3_x*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_x*c_rrrs_o_y -
         axis_z_rrrs_axes3_in_base_x*c_rrrs_o_z
@@ -2454,21 +2480,21 @@ def _dynamics_rrrs(c, k, x, s, f):
     H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5
     H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3
     # (rrrs-V8) reciprocal vector 2
-    w_2_rrrs_t_3 = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y
-    w_2_rrrs_t_4 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y
-    w_2_rrrs_t_5 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y
+    w_2_rrrs_t = axis_x_rrrs_axes3_x*inv_r_2_rrrs_r0_y
+    w_2_rrrs_t_2 = axis_x_rrrs_axes3_y*inv_r_2_rrrs_r0_y
+    w_2_rrrs_t_3 = axis_x_rrrs_axes3_z*inv_r_2_rrrs_r0_y
     # (M12) moment of the column's unit force about the platform origin
-    H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_4 - q_rrrs_in_base_y*w_2_rrrs_t_5
-    H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_5 - q_rrrs_in_base_z*w_2_rrrs_t_3
-    H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t_3 - q_rrrs_in_base_x*w_2_rrrs_t_4
+    H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
+    H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
+    H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
     ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (Q_rrrs_t_12, Q_rrrs_t_13, Q_rrrs_t_14, Q_rrrs_t_16, Q_rrrs_t_17, Q_rrrs_t_19, M_ta_t_15,
         M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_20, M_ta_t_21, M_ta_t_22, M_ta_t_23, M_ta_t_24,
         M_aa_t_7, M_aa_t_8, M_aa_t_9, M_aa_t_10, M_aa_t_11, M_aa_t_12, U_rrrs_in_base_x,
         U_rrrs_in_base_y, U_rrrs_in_base_z, Z_a_t_4, Z_a_t_5, Z_a_t_6,), (w_1_rrrs_t_3,
-        w_1_rrrs_t_4, w_1_rrrs_t_5, H_a_1_rrrs_x, H_a_1_rrrs_y, H_a_1_rrrs_z, -w_2_rrrs_t_3,
-        -w_2_rrrs_t_4, -w_2_rrrs_t_5, H_a_2_rrrs_x, H_a_2_rrrs_y, H_a_2_rrrs_z,),
+        w_1_rrrs_t_4, w_1_rrrs_t_5, H_a_1_rrrs_x, H_a_1_rrrs_y, H_a_1_rrrs_z, -w_2_rrrs_t,
+        -w_2_rrrs_t_2, -w_2_rrrs_t_3, H_a_2_rrrs_x, H_a_2_rrrs_y, H_a_2_rrrs_z,),
     )
 
 
@@ -2534,7 +2560,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 817 mul, 592 add, 12 div, 6 sqrt, 2 trig
+# M: 768 mul, 589 add, 12 div, 6 sqrt, 2 trig
 def _M_before(c, X, f):
     (
     J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -2609,16 +2635,18 @@ def _M_rrrrs(c, k, x, s, f):
     (
     J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
         J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy, J_3_rrrrs_yz,
-        J_3_rrrrs_zz, J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz,
-        J_4_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, h_3_rrrrs_x,
-        h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z,
-        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t,
-        rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
-        rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
-        rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
-        rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_link3_mass,
-        rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz, J_4_rrrrs_zz,
+        Jc_1_rrrrs_t, Jc_2_rrrrs_t_2, Jc_2_rrrrs_t_3, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
+        branch_1_rrrrs, branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y,
+        d_c_rrrrs_yy, d_phi_4_rrrrs_t, h_2_rrrrs_x, h_2_rrrrs_y, h_3_rrrrs_x, h_3_rrrrs_y,
+        h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, hc_2_rrrrs_t, inv_rrrrs_platform_joint_offset_x,
+        inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
+        rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
+        rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
+        rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
+        rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
+        rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs,
+        size_rrrrs_t_8,
     ) = k
     y_2_extra_rrrrs, = x
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -2696,6 +2724,8 @@ def _M_rrrrs(c, k, x, s, f):
     # (rrrrs-V5) velocity of the connection point per rate of joint 1
     e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
     e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
+    e_1_rrrrs_r3_x = c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs
+    e_1_rrrrs_r3_y = c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs
     # (rrrrs-V4) from joint 1 to the connection point, along the links
     r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
     r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
@@ -2703,9 +2733,8 @@ def _M_rrrrs(c, k, x, s, f):
     r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
     # (rrrrs-V5) velocity of the connection point per rate of joint 1
     v_1_rrrrs_z = (
-    (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
-        r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
-        e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+    e_1_rrrrs_r3_x*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
+        e_1_rrrrs_r3_y*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_r0_x = c_4_rrrrs*r_3_rrrrs_x + r_3_rrrrs_t*s_4_rrrrs
@@ -2753,95 +2782,96 @@ def _M_rrrrs(c, k, x, s, f):
     axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
     )
+    # (rrrrs-G10) inertia tensor of link 4 about the connection point
+    J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs
+    _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs
+    J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs
+    _x_2 = J_4_rrrrs_t_2 + J_4_rrrrs_yy*s_4_rrrrs
+    _x_3 = J_4_rrrrs_xz*c_4_rrrrs + J_4_rrrrs_yz*s_4_rrrrs
+    _y = J_4_rrrrs_yz*c_4_rrrrs - J_4_rrrrs_xz*s_4_rrrrs
+    # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
+    Jc_3_rrrrs_xx = J_3_rrrrs_xx + _x*c_4_rrrrs + _x_2*s_4_rrrrs
+    Jc_3_rrrrs_xy = J_3_rrrrs_xy + _x_2*c_4_rrrrs - _x*s_4_rrrrs
+    Jc_3_rrrrs_xz = J_3_rrrrs_xz + _x_3
+    Jc_3_rrrrs_yy = (
+    J_3_rrrrs_yy + c_4_rrrrs*(J_4_rrrrs_yy*c_4_rrrrs - J_4_rrrrs_t) - s_4_rrrrs*(J_4_rrrrs_t_2 -
+        J_4_rrrrs_xx*s_4_rrrrs)
+    )
+    Jc_3_rrrrs_yz = J_3_rrrrs_yz + _y
+    Jc_3_rrrrs_t = Jc_3_rrrrs_xy*s_3_rrrrs
+    _x_4 = Jc_3_rrrrs_xx*c_3_rrrrs - Jc_3_rrrrs_t
+    Jc_3_rrrrs_t_2 = Jc_3_rrrrs_xy*c_3_rrrrs
+    _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs
+    _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs
+    _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs
+    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
+    h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
+    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x)
+    Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t
+    Jc_2_rrrrs_xy = (
+    J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs - h_3_rrrrs_r0_y*rrrrs_joint3_offset_x
+    )
+    # (rrrrs-N33) first moment of the links from 2 outwards
+    hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t
+    hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y
+    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
+    _y_3 = (
+    s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t -
+        _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) - c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs -
+        c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 + c_3_rrrrs*(Jc_3_rrrrs_t +
+        Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 + Jc_3_rrrrs_xx*s_3_rrrrs)))
+    )
+    # (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrrrs_t_2 = (
+    rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs - c_2_rrrrs_t*hc_2_rrrrs_y)
+    )
+    # (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit
+    L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x
+    # (rrrrs-V9) reciprocal vector 1
     inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
-    # (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_rrrrs_t = inv_v_1_rrrrs_z*s_2_rrrrs
-    d_alpha_1_rrrrs_t_2 = c_2_rrrrs_t*inv_v_1_rrrrs_z
-    # (rrrrs-A50) coefficient of the acceleration in: acceleration of the origin of joint 3
-    d_a_o3_rrrrs_t = d_alpha_1_rrrrs_t_2*rrrrs_joint3_offset_x
     # (rrrrs-V10) reciprocal vector 2
     inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
-    # (rrrrs-A23) coefficient of the acceleration in: angular acceleration of link 1
-    _x = c_3_rrrrs*d_alpha_1_rrrrs_t - d_alpha_1_rrrrs_t_2*s_3_rrrrs
-    _y = -c_3_rrrrs*d_alpha_1_rrrrs_t_2 - d_alpha_1_rrrrs_t*s_3_rrrrs
-    # (rrrrs-V10) reciprocal vector 2
-    w_3_rrrrs_t = c_4_rrrrs*inv_r_3_rrrrs_r0_y
-    w_3_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*s_4_rrrrs
     # (rrrrs-V11) reciprocal vector 3
     w_4_rrrrs_t = inv_r_3_rrrrs_r0_y*inv_rrrrs_platform_joint_offset_x*r_3_rrrrs_r0_x
-    # (rrrrs-A34) coefficient of the acceleration in: angular acceleration of link 3
-    _x_2 = _x*c_4_rrrrs - _y*s_4_rrrrs
-    _y_2 = _x*s_4_rrrrs + _y*c_4_rrrrs
-    # (rrrrs-A40) coefficient of the acceleration in: angular acceleration of link 4
-    d_alpha_4_rrrrs_zx = w_4_rrrrs_t - c_4_rrrrs*w_3_rrrrs_t - s_4_rrrrs*w_3_rrrrs_t_2
-    d_alpha_4_rrrrs_zy = (
-    inv_rrrrs_platform_joint_offset_x + c_4_rrrrs*w_3_rrrrs_t_2 - s_4_rrrrs*w_3_rrrrs_t
+    # (rrrrs-N80) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrrrs_z = (
+    e_1_rrrrs_r3_x*h_4_rrrrs_y + inv_v_1_rrrrs_z*(J_1_rrrrs_xx + _y_3) -
+        e_1_rrrrs_r3_y*h_4_rrrrs_x
     )
-    # (rrrrs-N31) coefficient of the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-    d_mu_4_rrrrs_t = J_4_rrrrs_xz*_x_2 + J_4_rrrrs_yz*_y_2
-    d_mu_4_rrrrs_xz = h_4_rrrrs_y + J_4_rrrrs_xx*_x_2 + J_4_rrrrs_xy*_y_2
-    d_mu_4_rrrrs_yz = J_4_rrrrs_xy*_x_2 + J_4_rrrrs_yy*_y_2 - h_4_rrrrs_x
-    d_mu_4_rrrrs_zx = J_4_rrrrs_zz*d_alpha_4_rrrrs_zx - h_4_rrrrs_y
-    d_mu_4_rrrrs_zy = h_4_rrrrs_x + J_4_rrrrs_zz*d_alpha_4_rrrrs_zy
-    # (rrrrs-N45) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d_N_3_rrrrs_xz = (
-    J_3_rrrrs_xx*_x + J_3_rrrrs_xy*_y + c_4_rrrrs*d_mu_4_rrrrs_xz + d_a_o3_rrrrs_t*h_3_rrrrs_y +
-        d_mu_4_rrrrs_yz*s_4_rrrrs
+    # (rrrrs-N58) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_rrrrs_t_2 = d_Gamma_3_rrrrs_t*r_3_rrrrs_r0_x
+    d_Gamma_3_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(Jc_3_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
+    # (rrrrs-N48) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d_Gamma_4_rrrrs_t = (
+    inv_v_1_rrrrs_z*(s_2_rrrrs*(_x_3*c_3_rrrrs - _y*s_3_rrrrs) - c_2_rrrrs_t*(_x_3*s_3_rrrrs +
+        _y*c_3_rrrrs))
     )
-    d_N_3_rrrrs_yz = (
-    J_3_rrrrs_xy*_x + J_3_rrrrs_yy*_y + c_4_rrrrs*d_mu_4_rrrrs_yz - d_a_o3_rrrrs_t*h_3_rrrrs_x -
-        d_mu_4_rrrrs_xz*s_4_rrrrs
+    d_Gamma_4_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(J_4_rrrrs_zz - d_Gamma_3_rrrrs_t_2)
+    # (rrrrs-N84) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_rrrrs_t_2 = d_Gamma_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
+    d_G_rrrrs_xx = d_Gamma_4_rrrrs_x*w_4_rrrrs_t - d_Gamma_3_rrrrs_x*inv_r_3_rrrrs_r0_y
+    d_G_rrrrs_xy = d_Gamma_3_rrrrs_y*w_4_rrrrs_t - d_Gamma_3_rrrrs_y*inv_r_3_rrrrs_r0_y
+    d_G_rrrrs_xz = (
+    d_Gamma_4_rrrrs_t*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*inv_v_1_rrrrs_z*(_x_6*s_2_rrrrs -
+        _y_2*c_2_rrrrs_t)
     )
-    d_N_3_rrrrs_zx = (
-    c_4_rrrrs*d_mu_4_rrrrs_zx + d_mu_4_rrrrs_zy*s_4_rrrrs - J_3_rrrrs_zz*w_3_rrrrs_t
-    )
-    d_N_3_rrrrs_zy = (
-    J_3_rrrrs_zz*w_3_rrrrs_t_2 + c_4_rrrrs*d_mu_4_rrrrs_zy - d_mu_4_rrrrs_zx*s_4_rrrrs
-    )
-    d_N_3_rrrrs_zz = d_mu_4_rrrrs_t + J_3_rrrrs_xz*_x + J_3_rrrrs_yz*_y
-    # (rrrrs-N20) coefficient of the acceleration in: inertia force of link 3 less its weight
-    _y_3 = h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t - c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t
-    _y_4 = c_3_rrrrs*h_3_rrrrs_x*w_3_rrrrs_t_2 - h_3_rrrrs_y*s_3_rrrrs*w_3_rrrrs_t_2
-    # (rrrrs-N59) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_rrrrs_zx = (
-    c_3_rrrrs*d_N_3_rrrrs_zx + rrrrs_joint3_offset_x*(_y_3*c_3_rrrrs - _y_4*s_3_rrrrs) -
-        d_N_3_rrrrs_zy*s_3_rrrrs
-    )
-    d_N_2_rrrrs_zy = (
-    c_3_rrrrs*d_N_3_rrrrs_zy + d_N_3_rrrrs_zx*s_3_rrrrs + rrrrs_joint3_offset_x*(_y_3*s_3_rrrrs +
-        _y_4*c_3_rrrrs)
-    )
-    d_N_2_rrrrs_t = (
-    c_2_rrrrs_t*(J_2_rrrrs_xy*d_alpha_1_rrrrs_t + c_3_rrrrs*d_N_3_rrrrs_yz +
-        d_N_3_rrrrs_xz*s_3_rrrrs - J_2_rrrrs_yy*d_alpha_1_rrrrs_t_2 -
-        rrrrs_joint3_offset_x*(_x*h_3_rrrrs_y + d_a_o3_rrrrs_t*rrrrs_link3_mass - _y*h_3_rrrrs_x))
-    )
-    # (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_rrrrs_t = d_mu_4_rrrrs_zy*inv_rrrrs_platform_joint_offset_x
-    d_G_rrrrs_t_2 = d_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
-    d_G_rrrrs_xx = (
-    d_mu_4_rrrrs_zx*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zx -
-        d_N_3_rrrrs_zy*s_4_rrrrs)
-    )
-    d_G_rrrrs_xy = (
-    d_mu_4_rrrrs_zy*w_4_rrrrs_t - inv_r_3_rrrrs_r0_y*(c_4_rrrrs*d_N_3_rrrrs_zy +
-        d_N_3_rrrrs_zx*s_4_rrrrs)
-    )
-    d_G_rrrrs_xz = d_mu_4_rrrrs_t*w_4_rrrrs_t - d_N_3_rrrrs_zz*inv_r_3_rrrrs_r0_y
-    # (rrrrs-N89) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrrrs_xx = d_alpha_4_rrrrs_zx*h_4_rrrrs_y - d_G_rrrrs_xx
-    d_c_rrrrs_xy = d_alpha_4_rrrrs_zy*h_4_rrrrs_y - d_G_rrrrs_xy
-    d_c_rrrrs_xz = -d_G_rrrrs_xz - _y_2*h_4_rrrrs_z
-    d_c_rrrrs_yz = _x_2*h_4_rrrrs_z - d_G_rrrrs_t_2
-    d_c_rrrrs_zz = (
-    _y_2*h_4_rrrrs_x - _x_2*h_4_rrrrs_y - inv_v_1_rrrrs_z*(J_1_rrrrs_xx*inv_v_1_rrrrs_z +
-        s_2_rrrrs*(J_2_rrrrs_xx*d_alpha_1_rrrrs_t + c_3_rrrrs*d_N_3_rrrrs_xz -
-        J_2_rrrrs_xy*d_alpha_1_rrrrs_t_2 - d_N_3_rrrrs_yz*s_3_rrrrs) - d_N_2_rrrrs_t)
-    )
-    # (rrrrs-N91) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrrrs_t = d_G_rrrrs_t + d_c_rrrrs_xx + d_alpha_4_rrrrs_zy*h_4_rrrrs_x
+    # (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 4
+    d_alpha_4_rrrrs_t = e_1_rrrrs_r3_x*inv_v_1_rrrrs_z
+    d_alpha_4_rrrrs_t_2 = e_1_rrrrs_r3_y*inv_v_1_rrrrs_z
+    # (rrrrs-N88) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrrrs_xx = h_4_rrrrs_y*(w_4_rrrrs_t - inv_r_3_rrrrs_r0_y) - d_G_rrrrs_xx
+    d_c_rrrrs_xy = d_phi_4_rrrrs_t - d_G_rrrrs_xy
+    d_c_rrrrs_xz = -d_G_rrrrs_xz - d_alpha_4_rrrrs_t_2*h_4_rrrrs_z
+    d_c_rrrrs_yz = d_alpha_4_rrrrs_t*h_4_rrrrs_z - d_G_rrrrs_t_2
+    # (rrrrs-N90) inertia of the leg at the connection point, without the mass gathered there
+    Q_rrrrs_t = d_c_rrrrs_xx - d_c_rrrrs_yy
     Q_rrrrs_t_2 = 0.5*Q_rrrrs_t
-    Q_rrrrs_t_3 = d_c_rrrrs_xx - d_c_rrrrs_zz
+    Q_rrrrs_t_3 = (
+    d_c_rrrrs_xx + d_Gamma_1_rrrrs_z*inv_v_1_rrrrs_z + d_alpha_4_rrrrs_t*h_4_rrrrs_y -
+        d_alpha_4_rrrrs_t_2*h_4_rrrrs_x
+    )
     Q_rrrrs_t_4 = 0.5*Q_rrrrs_t_3
     Q_rrrrs_t_5 = (
     axis_x_rrrrs_axes4_x*d_c_rrrrs_xy + axis_z_rrrrs_axes4_in_base_x*d_c_rrrrs_yz -
@@ -2907,25 +2937,17 @@ def _M_rrrrs(c, k, x, s, f):
     r_2_rrrrs_r0_y = c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x
     r_2_rrrrs_r1_x = c_4_rrrrs*r_2_rrrrs_r0_x - r_2_rrrrs_r0_y*s_4_rrrrs
     r_2_rrrrs_r1_y = c_4_rrrrs*r_2_rrrrs_r0_y + r_2_rrrrs_r0_x*s_4_rrrrs
-    # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
-    bias_rrrrs_t = c_3_rrrrs*rrrrs_joint3_offset_x
-    bias_rrrrs_t_2 = rrrrs_joint3_offset_x*s_3_rrrrs
-    # (rrrrs-N67) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
-    d_Gamma_2_rrrrs_r0_x = c_3_rrrrs*d_N_2_rrrrs_zx + d_N_2_rrrrs_zy*s_3_rrrrs
-    d_Gamma_2_rrrrs_r0_y = c_3_rrrrs*d_N_2_rrrrs_zy - d_N_2_rrrrs_zx*s_3_rrrrs
-    # (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N70) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrrrs_x = -h_4_rrrrs_y - inv_r_3_rrrrs_r0_y*(L_c3_2_rrrrs_z - d_Gamma_3_rrrrs_t_2)
+    # (rrrrs-N94) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     d_P_2_rrrrs_x = (
-    c_4_rrrrs*d_Gamma_2_rrrrs_r0_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y - d_Gamma_2_rrrrs_r0_y*s_4_rrrrs
-        - d_mu_4_rrrrs_zx*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x
+    d_Gamma_2_rrrrs_x + d_G_rrrrs_xx*r_2_rrrrs_r1_y -
+        d_Gamma_4_rrrrs_x*inv_rrrrs_platform_joint_offset_x*r_2_rrrrs_r1_x
     )
-    d_P_2_rrrrs_y = (
-    c_4_rrrrs*d_Gamma_2_rrrrs_r0_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y + d_Gamma_2_rrrrs_r0_x*s_4_rrrrs
-        - d_G_rrrrs_t*r_2_rrrrs_r1_x
-    )
+    d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y - d_G_rrrrs_t*r_2_rrrrs_r1_x
     d_P_2_rrrrs_z = (
-    d_N_3_rrrrs_zz + J_2_rrrrs_xz*d_alpha_1_rrrrs_t + d_G_rrrrs_xz*r_2_rrrrs_r1_y +
-        rrrrs_joint3_offset_x*(_y*h_3_rrrrs_z*s_3_rrrrs - _x*c_3_rrrrs*h_3_rrrrs_z) -
-        J_2_rrrrs_yz*d_alpha_1_rrrrs_t_2 - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
+    d_G_rrrrs_xz*r_2_rrrrs_r1_y + inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 -
+        Jc_2_rrrrs_t_3) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
     )
     d_P_2_rrrrs_in_base_x = (
     axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
@@ -2951,37 +2973,27 @@ def _M_rrrrs(c, k, x, s, f):
     )
     # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
     d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y
-    # (rrrrs-A35) coefficient of the acceleration in: angular acceleration of link 3
-    d1_alpha_3_rrrrs_z = 1.0 - d1_qdd_3_rrrrs
-    # (rrrrs-N42) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d1_mu_3_rrrrs_z = (
-    J_3_rrrrs_zz*d1_alpha_3_rrrrs_z + bias_rrrrs_t*h_3_rrrrs_x - bias_rrrrs_t_2*h_3_rrrrs_y
-    )
-    # (rrrrs-A41) coefficient of the acceleration in: angular acceleration of link 4
-    d1_alpha_4_rrrrs_z = (
-    d1_alpha_3_rrrrs_z + inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
+    # (rrrrs-N59) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d1_Gamma_3_rrrrs_t = (
+    J_4_rrrrs_zz*inv_rrrrs_platform_joint_offset_x*(d1_qdd_3_rrrrs*r_3_rrrrs_r0_x -
         r_2_rrrrs_r1_x)
     )
-    # (rrrrs-N32) coefficient of the acceleration in: inertia moment of the links that turn with link 4, about their reference points
-    d1_mu_4_rrrrs_t = J_4_rrrrs_zz*d1_alpha_4_rrrrs_z
-    # (rrrrs-N46) coefficient of the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
-    d1_N_3_rrrrs_z = d1_mu_3_rrrrs_z + d1_mu_4_rrrrs_t
-    # (rrrrs-N21) coefficient of the acceleration in: inertia force of link 3 less its weight
-    d1_f_3_rrrrs_x = bias_rrrrs_t_2*rrrrs_link3_mass - d1_alpha_3_rrrrs_z*h_3_rrrrs_y
-    d1_f_3_rrrrs_y = bias_rrrrs_t*rrrrs_link3_mass + d1_alpha_3_rrrrs_z*h_3_rrrrs_x
-    # (rrrrs-N60) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d1_N_2_rrrrs_z = (
-    J_2_rrrrs_zz + d1_N_3_rrrrs_z + rrrrs_joint3_offset_x*(c_3_rrrrs*d1_f_3_rrrrs_y +
-        d1_f_3_rrrrs_x*s_3_rrrrs)
+    d1_Gamma_3_rrrrs = L_c3_2_rrrrs_z + d1_Gamma_3_rrrrs_t - Jc_3_rrrrs_zz*d1_qdd_3_rrrrs
+    # (rrrrs-N49) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
+    d1_Gamma_4_rrrrs = J_4_rrrrs_zz + d1_Gamma_3_rrrrs_t - J_4_rrrrs_zz*d1_qdd_3_rrrrs
+    # (rrrrs-N85) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d1_G_rrrrs_t = d1_Gamma_4_rrrrs*inv_rrrrs_platform_joint_offset_x
+    # (rrrrs-N71) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d1_Gamma_2_rrrrs = (
+    J_2_rrrrs_zz + Jc_2_rrrrs_t_4 + Jc_3_rrrrs_zz + d1_Gamma_3_rrrrs_t -
+        L_c3_2_rrrrs_z*d1_qdd_3_rrrrs
     )
-    # (rrrrs-N86) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d1_G_rrrrs_t = d1_mu_4_rrrrs_t*inv_rrrrs_platform_joint_offset_x
-    # (rrrrs-N96) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N95) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     d1_P_2_rrrrs_t = (
-    inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x - d1_N_3_rrrrs_z) -
+    inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x - d1_Gamma_3_rrrrs) -
         d1_G_rrrrs_t*r_2_rrrrs_r1_x
     )
-    d1_P_2_rrrrs = d1_N_2_rrrrs_z + d1_P_2_rrrrs_t
+    d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t
     ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (Q_rrrrs_t_12, Q_rrrrs_t_13, Q_rrrrs_t_14, Q_rrrrs_t_16, Q_rrrrs_t_17, Q_rrrrs_t_19,
@@ -2997,16 +3009,17 @@ def _M_rrrrs(c, k, x, s, f):
 def _M_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_2_rrrs_zz,
-        J_3_rrrs_xx, J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Kd_2_rrrs_t,
-        Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6, inv_size_rrrs_t_7, rho2_2_rrrs_t,
-        rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
-        rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
-        rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
-        rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
-        rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-        size_rrrs_t_8,
+    J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_3_rrrs_xx,
+        J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_1_rrrs_t,
+        Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, d_Gamma_2_rrrs_t,
+        d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, h_2_rrrs_x, h_2_rrrs_y, h_3_rrrs_x,
+        h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
+        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -3081,6 +3094,7 @@ def _M_rrrs(c, k, x, s, f):
         e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
+    r_2_rrrs_r0_x = c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs
     r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*r_2_rrrs_t
     # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
@@ -3117,64 +3131,60 @@ def _M_rrrs(c, k, x, s, f):
     axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
     )
+    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs
+    _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs
+    J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs
+    _x_8 = J_3_rrrs_t_2 + J_3_rrrs_yy*s_3_rrrs
+    _x_9 = J_3_rrrs_xz*c_3_rrrs + J_3_rrrs_yz*s_3_rrrs
+    _y_4 = J_3_rrrs_yz*c_3_rrrs - J_3_rrrs_xz*s_3_rrrs
+    # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_rrrs_xy = J_2_rrrs_xy + _x_8*c_3_rrrs - _x_7*s_3_rrrs
+    _y_5 = (
+    -c_2_rrrs*(-Jc_2_rrrs_xy*s_2_rrrs - c_2_rrrs*(J_2_rrrs_yy + c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs -
+        J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 - J_3_rrrs_xx*s_3_rrrs))) -
+        s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx + _x_7*c_3_rrrs + _x_8*s_3_rrrs))
+    )
+    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y - h_2_rrrs_x*s_2_rrrs)
+    # (rrrs-V7) reciprocal vector 1
     inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
     # (rrrs-V8) reciprocal vector 2
     inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
-    # (rrrs-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_rrrs_t = inv_v_1_rrrs_z*s_2_rrrs
-    d_alpha_1_rrrs_t_2 = c_2_rrrs*inv_v_1_rrrs_z
-    # (rrrs-V8) reciprocal vector 2
-    w_2_rrrs_t = c_3_rrrs*inv_r_2_rrrs_r0_y
-    w_2_rrrs_t_2 = inv_r_2_rrrs_r0_y*s_3_rrrs
     # (rrrs-V9) reciprocal vector 3
-    w_3_rrrs_t = (
-    inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*(c_3_rrrs*r_2_rrrs_x + r_2_rrrs_t*s_3_rrrs)
+    w_3_rrrs_t = inv_r_2_rrrs_r0_y*inv_rrrs_platform_joint_offset_x*r_2_rrrs_r0_x
+    # (rrrs-N50) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrrs_z = (
+    e_1_rrrs_r2_x*h_3_rrrs_y + inv_v_1_rrrs_z*(J_1_rrrs_xx + _y_5) - e_1_rrrs_r2_y*h_3_rrrs_x
     )
-    # (rrrs-A22) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = d_alpha_1_rrrs_t_2*s_3_rrrs - c_3_rrrs*d_alpha_1_rrrs_t
-    _y_5 = -c_3_rrrs*d_alpha_1_rrrs_t_2 - d_alpha_1_rrrs_t*s_3_rrrs
-    # (rrrs-A27) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_rrrs_zx = w_3_rrrs_t - c_3_rrrs*w_2_rrrs_t - s_3_rrrs*w_2_rrrs_t_2
-    d_alpha_3_rrrs_zy = (
-    inv_rrrs_platform_joint_offset_x + c_3_rrrs*w_2_rrrs_t_2 - s_3_rrrs*w_2_rrrs_t
-    )
-    # (rrrs-N19) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_rrrs_t = J_3_rrrs_xz*_x_3 + J_3_rrrs_yz*_y_5
-    d_mu_3_rrrs_xz = h_3_rrrs_y + J_3_rrrs_xx*_x_3 + J_3_rrrs_xy*_y_5
-    d_mu_3_rrrs_yz = J_3_rrrs_xy*_x_3 + J_3_rrrs_yy*_y_5 - h_3_rrrs_x
-    d_mu_3_rrrs_zx = J_3_rrrs_zz*d_alpha_3_rrrs_zx - h_3_rrrs_y
-    d_mu_3_rrrs_zy = h_3_rrrs_x + J_3_rrrs_zz*d_alpha_3_rrrs_zy
-    # (rrrs-N30) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_rrrs_zx = c_3_rrrs*d_mu_3_rrrs_zx + d_mu_3_rrrs_zy*s_3_rrrs - J_2_rrrs_zz*w_2_rrrs_t
-    d_N_2_rrrs_zy = J_2_rrrs_zz*w_2_rrrs_t_2 + c_3_rrrs*d_mu_3_rrrs_zy - d_mu_3_rrrs_zx*s_3_rrrs
-    _y_6 = (
-    -c_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_yz - J_2_rrrs_xy*d_alpha_1_rrrs_t -
-        J_2_rrrs_yy*d_alpha_1_rrrs_t_2 - d_mu_3_rrrs_xz*s_3_rrrs) -
-        s_2_rrrs*(c_3_rrrs*d_mu_3_rrrs_xz + d_mu_3_rrrs_yz*s_3_rrrs - J_2_rrrs_xx*d_alpha_1_rrrs_t
-        - J_2_rrrs_xy*d_alpha_1_rrrs_t_2)
-    )
-    # (rrrs-N50) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrrs_t_2 = d_Gamma_2_rrrs_t*r_2_rrrs_r0_x
+    d_Gamma_2_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(Jc_2_rrrs_zz - d_Gamma_2_rrrs_t_2)
+    # (rrrs-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_rrrs_t = inv_v_1_rrrs_z*(-_x_9*s_2_rrrs - _y_4*c_2_rrrs)
+    d_Gamma_3_rrrs_x = -h_3_rrrs_y - inv_r_2_rrrs_r0_y*(J_3_rrrs_zz - d_Gamma_2_rrrs_t_2)
+    # (rrrs-A25) coefficient of the acceleration in: angular acceleration of link 3
+    d_alpha_3_rrrs_t = e_1_rrrs_r2_x*inv_v_1_rrrs_z
+    d_alpha_3_rrrs_t_2 = e_1_rrrs_r2_y*inv_v_1_rrrs_z
+    # (rrrs-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_rrrs_xx = (
-    d_alpha_3_rrrs_zx*h_3_rrrs_y + inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zx -
-        d_N_2_rrrs_zy*s_3_rrrs) - d_mu_3_rrrs_zx*w_3_rrrs_t
+    d_Gamma_2_rrrs_x*inv_r_2_rrrs_r0_y + h_3_rrrs_y*(w_3_rrrs_t - inv_r_2_rrrs_r0_y) -
+        d_Gamma_3_rrrs_x*w_3_rrrs_t
     )
     d_c_rrrs_xy = (
-    d_alpha_3_rrrs_zy*h_3_rrrs_y + inv_r_2_rrrs_r0_y*(c_3_rrrs*d_N_2_rrrs_zy +
-        d_N_2_rrrs_zx*s_3_rrrs) - d_mu_3_rrrs_zy*w_3_rrrs_t
+    d_phi_3_rrrs_t + d_Gamma_2_rrrs_y*inv_r_2_rrrs_r0_y - d_Gamma_2_rrrs_y*w_3_rrrs_t
     )
     d_c_rrrs_xz = (
-    inv_r_2_rrrs_r0_y*(d_mu_3_rrrs_t - J_2_rrrs_xz*d_alpha_1_rrrs_t -
-        J_2_rrrs_yz*d_alpha_1_rrrs_t_2) - _y_5*h_3_rrrs_z - d_mu_3_rrrs_t*w_3_rrrs_t
+    inv_r_2_rrrs_r0_y*inv_v_1_rrrs_z*(-c_2_rrrs*(J_2_rrrs_yz + _y_4) - s_2_rrrs*(J_2_rrrs_xz +
+        _x_9)) - d_Gamma_3_rrrs_t*w_3_rrrs_t - d_alpha_3_rrrs_t_2*h_3_rrrs_z
     )
-    d_c_rrrs_yz = _x_3*h_3_rrrs_z - d_mu_3_rrrs_t*inv_rrrs_platform_joint_offset_x
-    # (rrrs-N52) inertia of the leg at the connection point, without the mass gathered there
-    Q_rrrs_t = (
-    d_c_rrrs_xx + d_alpha_3_rrrs_zy*h_3_rrrs_x + d_mu_3_rrrs_zy*inv_rrrs_platform_joint_offset_x
-    )
+    d_c_rrrs_yz = d_alpha_3_rrrs_t*h_3_rrrs_z - d_Gamma_3_rrrs_t*inv_rrrs_platform_joint_offset_x
+    # (rrrs-N58) inertia of the leg at the connection point, without the mass gathered there
+    Q_rrrs_t = d_c_rrrs_xx - d_c_rrrs_yy
     Q_rrrs_t_2 = 0.5*Q_rrrs_t
     Q_rrrs_t_3 = (
-    d_c_rrrs_xx + _x_3*h_3_rrrs_y + inv_v_1_rrrs_z*(_y_6 + J_1_rrrs_xx*inv_v_1_rrrs_z) -
-        _y_5*h_3_rrrs_x
+    d_c_rrrs_xx + d_Gamma_1_rrrs_z*inv_v_1_rrrs_z + d_alpha_3_rrrs_t*h_3_rrrs_y -
+        d_alpha_3_rrrs_t_2*h_3_rrrs_x
     )
     Q_rrrs_t_4 = 0.5*Q_rrrs_t_3
     Q_rrrs_t_5 = (
@@ -3288,7 +3298,7 @@ def _M_after(c, s, t, f):
     )
 
 
-# Z: 1045 mul, 769 add, 12 div, 6 sqrt, 2 trig
+# Z: 1033 mul, 769 add, 12 div, 6 sqrt, 2 trig
 def _Z_before(c, X, V, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
@@ -3617,6 +3627,7 @@ def _Z_rrrrs(c, k, x, s, f):
     W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
     W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
     W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
+    W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
     W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
     W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
     W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
@@ -3625,42 +3636,32 @@ def _Z_rrrrs(c, k, x, s, f):
     bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
     d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
     d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-    bias_rrrrs_t_3 = (
-    omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs) -
-        omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs)
-    )
-    bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x
-    bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs
-    d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs
-    d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs
-    bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs
-    bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs
-    bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x - d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x
-    bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs
-    bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z
-    bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z
-    bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x - bias_rrrrs_t_9*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x
-    bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x
+    d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
+    d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
+    bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
+    bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
+    d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
+    d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
+    bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
+    bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
     bias_rrrrs_x = (
-    bias_rrrrs_t_13*omega_3_rrrrs_r0_y + bias_rrrrs_t_3*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_8*omega_3_rrrrs_r0_y - bias_rrrrs_t_12*omega_3_rrrrs_z -
-        bias_rrrrs_t_14*omega_4_rrrrs_z - bias_rrrrs_t_15*omega_3_rrrrs_r0_y -
-        bias_rrrrs_t_7*yd_2_rrrrs
+    W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
+        W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
+        bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 +
+        W_4_rrrrs_t_2)
     )
     bias_rrrrs_y = (
-    bias_rrrrs_t_15*omega_3_rrrrs_r0_x - bias_rrrrs_t_11*omega_3_rrrrs_z -
-        bias_rrrrs_t_13*omega_3_rrrrs_r0_x - bias_rrrrs_t_3*omega_3_rrrrs_r0_x -
-        bias_rrrrs_t_6*yd_2_rrrrs - bias_rrrrs_t_8*omega_3_rrrrs_r0_x
+    W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
+        W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
+        bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 +
+        W_4_rrrrs_t)
     )
     bias_rrrrs_z = (
-    bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs - beta_3_rrrrs_y*s_4_rrrrs) +
-        bias_rrrrs_t_11*omega_3_rrrrs_r0_y + bias_rrrrs_t_12*omega_3_rrrrs_r0_x +
-        bias_rrrrs_t_14*omega_3_rrrrs_r0_x + bias_rrrrs_t_6*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_7*omega_3_rrrrs_r0_x + d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-        d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-        beta_4_rrrrs_y*rrrrs_platform_joint_offset_x
+    bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
+        bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
+        beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y)
+        + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+        2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
     )
     # (rrrrs-A1) centripetal acceleration of the connection point
     u_1_rrrrs_x = S_dot_rrrrs_t_3*omega_y - S_dot_rrrrs_t_2*omega_z
@@ -3685,19 +3686,19 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-A15) remainder without the acceleration in: acceleration of joint 1
     qdd_3_rrrrs_o = inv_r_3_rrrrs_r0_y*rel_rrrrs_o_x
     qdd_1_rrrrs_o = inv_v_1_rrrrs_z*rel_rrrrs_o_z
-    # (rrrrs-A25) remainder without the acceleration in: angular acceleration of link 1
+    # (rrrrs-A23) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_rrrrs_o_t = qdd_1_rrrrs_o*s_2_rrrrs
     alpha_1_rrrrs_o_t_2 = c_2_rrrrs_t*qdd_1_rrrrs_o
-    # (rrrrs-A30) remainder without the acceleration in: angular acceleration of link 2
+    # (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x
     alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y
-    # (rrrrs-A32) acceleration tensor of link 2
+    # (rrrrs-A29) acceleration tensor of link 2
     B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y
     B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x
-    # (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3
+    # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3)
     a_o3_rrrrs_o_t_2 = W_2_rrrrs_xy*rrrrs_joint3_offset_x
-    # (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
     g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
     g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
@@ -3707,17 +3708,17 @@ def _Z_rrrrs(c, k, x, s, f):
     acc_3_rrrrs_o_x = -g_r4_x - a_o3_rrrrs_o_t*c_3_rrrrs - a_o3_rrrrs_o_t_2*s_3_rrrrs
     acc_3_rrrrs_o_y = a_o3_rrrrs_o_t*s_3_rrrrs - g_r4_y - a_o3_rrrrs_o_t_2*c_3_rrrrs
     acc_3_rrrrs_o_z = B_2_rrrrs_o_zx*rrrrs_joint3_offset_x - g_r1_x
-    # (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_rrrrs_o_x = alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs - zeta_3_rrrrs_x
     alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs - alpha_2_rrrrs_o_x*s_3_rrrrs
-    # (rrrrs-A38) acceleration tensor of link 3
+    # (rrrrs-A33) acceleration tensor of link 3
     B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o
     B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y
     B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o
     B_3_rrrrs_o_yz = W_3_rrrrs_yz - alpha_3_rrrrs_o_x
     B_3_rrrrs_o_zx = W_3_rrrrs_xz - alpha_3_rrrrs_o_y
     B_3_rrrrs_o_zy = W_3_rrrrs_yz + alpha_3_rrrrs_o_x
-    # (rrrrs-N43) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrrs-N54) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrrs_o_x = (
     B_3_rrrrs_o_yx*J_3_rrrrs_xz + B_3_rrrrs_o_zy*Sigma_3_rrrrs_yy + J_3_rrrrs_yz*(W_3_rrrrs_t_2 -
         W_3_rrrrs_t_3) + acc_3_rrrrs_o_z*h_3_rrrrs_y - B_3_rrrrs_o_yz*Sigma_3_rrrrs_zz -
@@ -3733,11 +3734,11 @@ def _Z_rrrrs(c, k, x, s, f):
         W_3_rrrrs_t_2) + acc_3_rrrrs_o_y*h_3_rrrrs_x - B_3_rrrrs_o_xy*Sigma_3_rrrrs_yy -
         B_3_rrrrs_o_yz*J_3_rrrrs_xz - acc_3_rrrrs_o_x*h_3_rrrrs_y
     )
-    # (rrrrs-N24) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
+    # (rrrrs-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     acc_4_rrrrs_o_x = u_1_rrrrs_tip_x + g_r4_y*s_4_rrrrs - c_4_rrrrs*g_r4_x
     acc_4_rrrrs_o_y = u_1_rrrrs_tip_y - c_4_rrrrs*g_r4_y - g_r4_x*s_4_rrrrs
     acc_4_rrrrs_o_z = u_1_rrrrs_tip_z - g_r1_x
-    # (rrrrs-A42) remainder without the acceleration in: angular acceleration of link 4
+    # (rrrrs-A36) remainder without the acceleration in: angular acceleration of link 4
     alpha_4_rrrrs_o_x = (
     alpha_3_rrrrs_o_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_o_y*s_4_rrrrs
     )
@@ -3746,14 +3747,14 @@ def _Z_rrrrs(c, k, x, s, f):
     inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y + qdd_3_rrrrs_o*r_3_rrrrs_r0_x) -
         qdd_3_rrrrs_o
     )
-    # (rrrrs-A44) acceleration tensor of link 4
+    # (rrrrs-A38) acceleration tensor of link 4
     B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z
     B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y
     B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z
     B_4_rrrrs_o_yz = W_4_rrrrs_yz - alpha_4_rrrrs_o_x
     B_4_rrrrs_o_zx = W_4_rrrrs_xz - alpha_4_rrrrs_o_y
     B_4_rrrrs_o_zy = W_4_rrrrs_yz + alpha_4_rrrrs_o_x
-    # (rrrrs-N33) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 4, about their reference points
     mu_4_rrrrs_o_x = (
     B_4_rrrrs_o_yx*J_4_rrrrs_xz + B_4_rrrrs_o_zy*Sigma_4_rrrrs_yy + J_4_rrrrs_yz*(W_4_rrrrs_t_2 -
         W_4_rrrrs_t_3) + acc_4_rrrrs_o_z*h_4_rrrrs_y - B_4_rrrrs_o_yz*Sigma_4_rrrrs_zz -
@@ -3769,11 +3770,11 @@ def _Z_rrrrs(c, k, x, s, f):
         W_4_rrrrs_t_2) + acc_4_rrrrs_o_y*h_4_rrrrs_x - B_4_rrrrs_o_xy*Sigma_4_rrrrs_yy -
         B_4_rrrrs_o_yz*J_4_rrrrs_xz - acc_4_rrrrs_o_x*h_4_rrrrs_y
     )
-    # (rrrrs-N47) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrs-N56) remainder without the acceleration in: moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_rrrrs_o_x = mu_3_rrrrs_o_x + c_4_rrrrs*mu_4_rrrrs_o_x + mu_4_rrrrs_o_y*s_4_rrrrs
     N_3_rrrrs_o_y = mu_3_rrrrs_o_y + c_4_rrrrs*mu_4_rrrrs_o_y - mu_4_rrrrs_o_x*s_4_rrrrs
     N_3_rrrrs_o_z = mu_3_rrrrs_o_z + mu_4_rrrrs_o_z
-    # (rrrrs-N22) remainder without the acceleration in: inertia force of link 3 less its weight
+    # (rrrrs-N14) remainder without the acceleration in: inertia force of link 3 less its weight
     f_3_rrrrs_o_x = (
     B_3_rrrrs_o_xy*h_3_rrrrs_y + B_3_rrrrs_o_xz*h_3_rrrrs_z + acc_3_rrrrs_o_x*rrrrs_link3_mass -
         h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3)
@@ -3786,7 +3787,7 @@ def _Z_rrrrs(c, k, x, s, f):
     B_3_rrrrs_o_zx*h_3_rrrrs_x + B_3_rrrrs_o_zy*h_3_rrrrs_y + acc_3_rrrrs_o_z*rrrrs_link3_mass -
         h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
     )
-    # (rrrrs-N57) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrs-N64) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrrs_o_x = (
     B_2_rrrrs_o_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2 - W_2_rrrrs_t_3) +
         Sigma_2_rrrrs_zz*alpha_1_rrrrs_o_t + g_r3_y*h_2_rrrrs_z - B_2_rrrrs_o_zx*J_2_rrrrs_xy -
@@ -3802,7 +3803,7 @@ def _Z_rrrrs(c, k, x, s, f):
         Sigma_2_rrrrs_yy*W_2_rrrrs_xy + g_r3_x*h_2_rrrrs_y - J_2_rrrrs_yz*alpha_1_rrrrs_o_t_2 -
         Sigma_2_rrrrs_xx*W_2_rrrrs_xy - g_r3_y*h_2_rrrrs_x
     )
-    # (rrrrs-N61) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrs-N66) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrrs_o_x = mu_2_rrrrs_o_x + N_3_rrrrs_o_x*c_3_rrrrs - N_3_rrrrs_o_y*s_3_rrrrs
     N_2_rrrrs_o_y = (
     mu_2_rrrrs_o_y + N_3_rrrrs_o_x*s_3_rrrrs + N_3_rrrrs_o_y*c_3_rrrrs -
@@ -3812,16 +3813,16 @@ def _Z_rrrrs(c, k, x, s, f):
     N_3_rrrrs_o_z + mu_2_rrrrs_o_z + rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_o_y +
         f_3_rrrrs_o_x*s_3_rrrrs)
     )
-    # (rrrrs-N75) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrrrs-N76) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrrs_o_z = J_1_rrrrs_xx*qdd_1_rrrrs_o - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-    # (rrrrs-N79) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrs-N78) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrrs_o_z = mu_1_rrrrs_o_z + N_2_rrrrs_o_x*s_2_rrrrs - N_2_rrrrs_o_y*c_2_rrrrs_t
-    # (rrrrs-N87) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrrs-N86) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrrs_o_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_o_z
     G_rrrrs_o_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_o_t*r_3_rrrrs_r0_x - N_3_rrrrs_o_z)
-    # (rrrrs-N90) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrs-N89) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrrrs_o_x = (
-    h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - G_rrrrs_o_t_2 - B_4_rrrrs_o_xy*h_4_rrrrs_y -
+    W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_o_t_2 - B_4_rrrrs_o_xy*h_4_rrrrs_y -
         B_4_rrrrs_o_xz*h_4_rrrrs_z
     )
     c_rrrrs_o_y = (
@@ -3832,7 +3833,7 @@ def _Z_rrrrs(c, k, x, s, f):
     h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_o_zx*h_4_rrrrs_x -
         B_4_rrrrs_o_zy*h_4_rrrrs_y - N_1_rrrrs_o_z*inv_v_1_rrrrs_z
     )
-    # (rrrrs-N92) velocity and gravity terms of the leg force
+    # (rrrrs-N91) velocity and gravity terms of the leg force
     U_rrrrs_in_base_x = (
     -axis_x_rrrrs_axes4_x*c_rrrrs_o_x - axis_y_rrrrs_axes4_in_base_x*c_rrrrs_o_y -
         axis_z_rrrrs_axes4_in_base_x*c_rrrrs_o_z
@@ -3849,7 +3850,7 @@ def _Z_rrrrs(c, k, x, s, f):
     Z_a_t = U_rrrrs_in_base_z*q_rrrrs_in_base_y - U_rrrrs_in_base_y*q_rrrrs_in_base_z
     Z_a_t_2 = U_rrrrs_in_base_x*q_rrrrs_in_base_z - U_rrrrs_in_base_z*q_rrrrs_in_base_x
     Z_a_t_3 = U_rrrrs_in_base_y*q_rrrrs_in_base_x - U_rrrrs_in_base_x*q_rrrrs_in_base_y
-    # (rrrrs-N97) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x
     P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t
     ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
@@ -4096,18 +4097,18 @@ def _Z_rrrs(c, k, x, s, f):
     g_r1_y_2 = -c_1_rrrs*g_r0_y_2 - g_r0_x_2*s_1_rrrs
     g_r3_x_2 = -c_2_rrrs*g_r1_y_2 - g_r0_z_2*s_2_rrrs
     g_r3_y_2 = g_r1_y_2*s_2_rrrs - c_2_rrrs*g_r0_z_2
-    # (rrrs-A18) remainder without the acceleration in: angular acceleration of link 1
+    # (rrrs-A17) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_rrrs_o_t = qdd_1_rrrs_o*s_2_rrrs
     alpha_1_rrrs_o_t_2 = c_2_rrrs*qdd_1_rrrs_o
-    # (rrrs-A23) remainder without the acceleration in: angular acceleration of link 2
+    # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t
     alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y
-    # (rrrs-A25) acceleration tensor of link 2
+    # (rrrs-A23) acceleration tensor of link 2
     B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o
     B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o
     B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y
     B_2_rrrs_o_zy = alpha_2_rrrs_o_x + zeta_2_rrrs_x
-    # (rrrs-N28) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrs_o_x = (
     B_2_rrrs_o_yx*J_2_rrrs_xz + B_2_rrrs_o_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
         W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_o_zx*J_2_rrrs_xy -
@@ -4123,11 +4124,11 @@ def _Z_rrrs(c, k, x, s, f):
         - B_2_rrrs_o_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_o_t -
         J_2_rrrs_yz*alpha_1_rrrs_o_t_2 - g_r3_y_2*h_2_rrrs_x
     )
-    # (rrrs-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_rrrs_o_x = u_1_rrrs_tip_x + g_r3_y_2*s_3_rrrs - c_3_rrrs*g_r3_x_2
     acc_3_rrrs_o_y = u_1_rrrs_tip_y - c_3_rrrs*g_r3_y_2 - g_r3_x_2*s_3_rrrs
     acc_3_rrrs_o_z = u_1_rrrs_tip_z - g_r1_x_2
-    # (rrrs-A28) remainder without the acceleration in: angular acceleration of link 3
+    # (rrrs-A26) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_rrrs_o_x = (
     alpha_2_rrrs_o_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_o_y*s_3_rrrs
     )
@@ -4135,14 +4136,14 @@ def _Z_rrrs(c, k, x, s, f):
     alpha_3_rrrs_o_z = (
     inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y + qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o
     )
-    # (rrrs-A30) acceleration tensor of link 3
+    # (rrrs-A28) acceleration tensor of link 3
     B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z
     B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y
     B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z
     B_3_rrrs_o_yz = W_3_rrrs_yz - alpha_3_rrrs_o_x
     B_3_rrrs_o_zx = W_3_rrrs_xz - alpha_3_rrrs_o_y
     B_3_rrrs_o_zy = W_3_rrrs_yz + alpha_3_rrrs_o_x
-    # (rrrs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N30) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrs_o_x = (
     B_3_rrrs_o_yx*J_3_rrrs_xz + B_3_rrrs_o_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
         W_3_rrrs_t_3) + acc_3_rrrs_o_z*h_3_rrrs_y - B_3_rrrs_o_yz*Sigma_3_rrrs_zz -
@@ -4158,17 +4159,17 @@ def _Z_rrrs(c, k, x, s, f):
         W_3_rrrs_t_2) + acc_3_rrrs_o_y*h_3_rrrs_x - B_3_rrrs_o_xy*Sigma_3_rrrs_yy -
         B_3_rrrs_o_yz*J_3_rrrs_xz - acc_3_rrrs_o_x*h_3_rrrs_y
     )
-    # (rrrs-N31) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrs_o_x = mu_2_rrrs_o_x + c_3_rrrs*mu_3_rrrs_o_x + mu_3_rrrs_o_y*s_3_rrrs
     N_2_rrrs_o_y = mu_2_rrrs_o_y + c_3_rrrs*mu_3_rrrs_o_y - mu_3_rrrs_o_x*s_3_rrrs
     N_2_rrrs_o_z = mu_2_rrrs_o_z + mu_3_rrrs_o_z
-    # (rrrs-N39) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N46) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrs_o_z = J_1_rrrs_xx*qdd_1_rrrs_o - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-    # (rrrs-N42) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N48) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrs_o_z = mu_1_rrrs_o_z - N_2_rrrs_o_x*s_2_rrrs - N_2_rrrs_o_y*c_2_rrrs
-    # (rrrs-N48) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrs_o_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_o_z
-    # (rrrs-N51) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrrs_o_x = (
     h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_o_xy*h_3_rrrs_y - B_3_rrrs_o_xz*h_3_rrrs_z
         - inv_r_2_rrrs_r0_y*(G_rrrs_o_t*r_2_rrrs_r0_x - N_2_rrrs_o_z)
@@ -4181,7 +4182,7 @@ def _Z_rrrs(c, k, x, s, f):
     h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_o_zx*h_3_rrrs_x - B_3_rrrs_o_zy*h_3_rrrs_y -
         N_1_rrrs_o_z*inv_v_1_rrrs_z
     )
-    # (rrrs-N53) velocity and gravity terms of the leg force
+    # (rrrs-N59) velocity and gravity terms of the leg force
     U_rrrs_in_base_x = (
     -axis_x_rrrs_axes3_x*c_rrrs_o_x - axis_y_rrrs_axes3_in_base_x*c_rrrs_o_y -
         axis_z_rrrs_axes3_in_base_x*c_rrrs_o_z
@@ -4578,7 +4579,7 @@ def _H_rrrs(c, k, x, s, f):
     )
 
 
-# required: 1159 mul, 858 add, 12 div, 6 sqrt, 2 trig
+# required: 1147 mul, 858 add, 12 div, 6 sqrt, 2 trig
 def _required_before(c, X, V, A, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, gravity_x, gravity_y,
@@ -4953,6 +4954,7 @@ def _required_rrrrs(c, k, x, s, f):
     W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
     W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
     W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
+    W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
     W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
     W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
     W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
@@ -4961,46 +4963,36 @@ def _required_rrrrs(c, k, x, s, f):
     bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
     d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
     d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-    bias_rrrrs_t_3 = (
-    omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs) -
-        omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs)
-    )
-    bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x
-    bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs
-    d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs
-    d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs
-    bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs
-    bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs
-    bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x - d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x
-    bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs
-    bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z
-    bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z
-    bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x - bias_rrrrs_t_9*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x
-    bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x
+    d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
+    d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
+    bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
+    bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
+    d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
+    d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
+    bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
+    bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
     bias_rrrrs_x = (
-    bias_rrrrs_t_13*omega_3_rrrrs_r0_y + bias_rrrrs_t_3*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_8*omega_3_rrrrs_r0_y - bias_rrrrs_t_12*omega_3_rrrrs_z -
-        bias_rrrrs_t_14*omega_4_rrrrs_z - bias_rrrrs_t_15*omega_3_rrrrs_r0_y -
-        bias_rrrrs_t_7*yd_2_rrrrs
+    W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
+        W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
+        bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_3 +
+        W_4_rrrrs_t_2)
     )
     bias_rrrrs_y = (
-    bias_rrrrs_t_15*omega_3_rrrrs_r0_x - bias_rrrrs_t_11*omega_3_rrrrs_z -
-        bias_rrrrs_t_13*omega_3_rrrrs_r0_x - bias_rrrrs_t_3*omega_3_rrrrs_r0_x -
-        bias_rrrrs_t_6*yd_2_rrrrs - bias_rrrrs_t_8*omega_3_rrrrs_r0_x
+    W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
+        W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
+        bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_3 +
+        W_4_rrrrs_t)
     )
     bias_rrrrs_z = (
-    bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs - beta_3_rrrrs_y*s_4_rrrrs) +
-        bias_rrrrs_t_11*omega_3_rrrrs_r0_y + bias_rrrrs_t_12*omega_3_rrrrs_r0_x +
-        bias_rrrrs_t_14*omega_3_rrrrs_r0_x + bias_rrrrs_t_6*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_7*omega_3_rrrrs_r0_x + d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-        d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-        beta_4_rrrrs_y*rrrrs_platform_joint_offset_x
+    bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
+        bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
+        beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y)
+        + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+        2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
     )
-    # (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3
+    # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t_2 + W_2_rrrrs_t_3)
-    # (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
     g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
     g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
@@ -5050,7 +5042,7 @@ def _required_rrrrs(c, k, x, s, f):
     # (rrrrs-A13) acceleration of joint 1
     qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x
     qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
-    # (rrrrs-N23) acceleration of the reference point of link 4, less gravity
+    # (rrrrs-N15) acceleration of the reference point of link 4, less gravity
     acc_4_rrrrs_x = (
     S_ddot_rrrrs_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
         axis_x_rrrrs_axes4_z*gravity_z
@@ -5066,17 +5058,17 @@ def _required_rrrrs(c, k, x, s, f):
     # (rrrrs-A22) angular acceleration of link 1
     alpha_1_rrrrs_t = qdd_1_rrrrs*s_2_rrrrs
     alpha_1_rrrrs_t_2 = c_2_rrrrs_t*qdd_1_rrrrs
-    # (rrrrs-A28) angular acceleration of link 2
+    # (rrrrs-A26) angular acceleration of link 2
     alpha_2_rrrrs_x = alpha_1_rrrrs_t - zeta_2_rrrrs_x
     alpha_2_rrrrs_y = -alpha_1_rrrrs_t_2 - zeta_2_rrrrs_y
-    # (rrrrs-A31) acceleration tensor of link 2
+    # (rrrrs-A28) acceleration tensor of link 2
     B_2_rrrrs_xy = -W_2_rrrrs_xy - ydd_2_rrrrs
     B_2_rrrrs_yx = ydd_2_rrrrs - W_2_rrrrs_xy
     B_2_rrrrs_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_y
     B_2_rrrrs_zy = alpha_2_rrrrs_x - zeta_2_rrrrs_x
-    # (rrrrs-A49) acceleration of the origin of joint 3
+    # (rrrrs-A41) acceleration of the origin of joint 3
     a_o3_rrrrs_t = B_2_rrrrs_yx*rrrrs_joint3_offset_x
-    # (rrrrs-N13) acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N9) acceleration of the reference point of link 3, less gravity
     acc_3_rrrrs_x = (
     a_o3_rrrrs_t*s_3_rrrrs - a_o3_rrrrs_o_t*c_3_rrrrs - c_3_rrrrs*g_r3_x - g_r3_y*s_3_rrrrs
     )
@@ -5084,18 +5076,18 @@ def _required_rrrrs(c, k, x, s, f):
     a_o3_rrrrs_o_t*s_3_rrrrs + a_o3_rrrrs_t*c_3_rrrrs + g_r3_x*s_3_rrrrs - c_3_rrrrs*g_r3_y
     )
     acc_3_rrrrs_z = B_2_rrrrs_zx*rrrrs_joint3_offset_x - g_r1_x
-    # (rrrrs-A33) angular acceleration of link 3
+    # (rrrrs-A30) angular acceleration of link 3
     alpha_3_rrrrs_x = alpha_2_rrrrs_x*c_3_rrrrs + alpha_2_rrrrs_y*s_3_rrrrs - zeta_3_rrrrs_x
     alpha_3_rrrrs_y = zeta_3_rrrrs_y + alpha_2_rrrrs_y*c_3_rrrrs - alpha_2_rrrrs_x*s_3_rrrrs
     alpha_3_rrrrs_z = ydd_2_rrrrs - qdd_3_rrrrs
-    # (rrrrs-A37) acceleration tensor of link 3
+    # (rrrrs-A32) acceleration tensor of link 3
     B_3_rrrrs_xy = W_3_rrrrs_xy - alpha_3_rrrrs_z
     B_3_rrrrs_xz = W_3_rrrrs_xz + alpha_3_rrrrs_y
     B_3_rrrrs_yx = W_3_rrrrs_xy + alpha_3_rrrrs_z
     B_3_rrrrs_yz = W_3_rrrrs_yz - alpha_3_rrrrs_x
     B_3_rrrrs_zx = W_3_rrrrs_xz - alpha_3_rrrrs_y
     B_3_rrrrs_zy = W_3_rrrrs_yz + alpha_3_rrrrs_x
-    # (rrrrs-N40) inertia moment of the links that turn with link 3, about their reference points
+    # (rrrrs-N53) inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrrs_x = (
     B_3_rrrrs_yx*J_3_rrrrs_xz + B_3_rrrrs_zy*Sigma_3_rrrrs_yy + J_3_rrrrs_yz*(W_3_rrrrs_t_2 -
         W_3_rrrrs_t_3) + acc_3_rrrrs_z*h_3_rrrrs_y - B_3_rrrrs_yz*Sigma_3_rrrrs_zz -
@@ -5111,7 +5103,7 @@ def _required_rrrrs(c, k, x, s, f):
         W_3_rrrrs_t_2) + acc_3_rrrrs_y*h_3_rrrrs_x - B_3_rrrrs_xy*Sigma_3_rrrrs_yy -
         B_3_rrrrs_yz*J_3_rrrrs_xz - acc_3_rrrrs_x*h_3_rrrrs_y
     )
-    # (rrrrs-A39) angular acceleration of link 4
+    # (rrrrs-A34) angular acceleration of link 4
     alpha_4_rrrrs_x = (
     alpha_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_y*s_4_rrrrs
     )
@@ -5119,14 +5111,14 @@ def _required_rrrrs(c, k, x, s, f):
     alpha_4_rrrrs_z = (
     alpha_3_rrrrs_z + inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x)
     )
-    # (rrrrs-A43) acceleration tensor of link 4
+    # (rrrrs-A37) acceleration tensor of link 4
     B_4_rrrrs_xy = W_4_rrrrs_xy - alpha_4_rrrrs_z
     B_4_rrrrs_xz = W_4_rrrrs_xz + alpha_4_rrrrs_y
     B_4_rrrrs_yx = W_4_rrrrs_xy + alpha_4_rrrrs_z
     B_4_rrrrs_yz = W_4_rrrrs_yz - alpha_4_rrrrs_x
     B_4_rrrrs_zx = W_4_rrrrs_xz - alpha_4_rrrrs_y
     B_4_rrrrs_zy = W_4_rrrrs_yz + alpha_4_rrrrs_x
-    # (rrrrs-N30) inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrs-N45) inertia moment of the links that turn with link 4, about their reference points
     mu_4_rrrrs_x = (
     B_4_rrrrs_yx*J_4_rrrrs_xz + B_4_rrrrs_zy*Sigma_4_rrrrs_yy + J_4_rrrrs_yz*(W_4_rrrrs_t_2 -
         W_4_rrrrs_t_3) + acc_4_rrrrs_z*h_4_rrrrs_y - B_4_rrrrs_yz*Sigma_4_rrrrs_zz -
@@ -5142,11 +5134,11 @@ def _required_rrrrs(c, k, x, s, f):
         W_4_rrrrs_t_2) + acc_4_rrrrs_y*h_4_rrrrs_x - B_4_rrrrs_xy*Sigma_4_rrrrs_yy -
         B_4_rrrrs_yz*J_4_rrrrs_xz - acc_4_rrrrs_x*h_4_rrrrs_y
     )
-    # (rrrrs-N44) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrs-N55) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_rrrrs_x = mu_3_rrrrs_x + c_4_rrrrs*mu_4_rrrrs_x + mu_4_rrrrs_y*s_4_rrrrs
     N_3_rrrrs_y = mu_3_rrrrs_y + c_4_rrrrs*mu_4_rrrrs_y - mu_4_rrrrs_x*s_4_rrrrs
     N_3_rrrrs_z = mu_3_rrrrs_z + mu_4_rrrrs_z
-    # (rrrrs-N19) inertia force of link 3 less its weight
+    # (rrrrs-N13) inertia force of link 3 less its weight
     f_3_rrrrs_x = (
     B_3_rrrrs_xy*h_3_rrrrs_y + B_3_rrrrs_xz*h_3_rrrrs_z + acc_3_rrrrs_x*rrrrs_link3_mass -
         h_3_rrrrs_x*(W_3_rrrrs_t_2 + W_3_rrrrs_t_3)
@@ -5159,7 +5151,7 @@ def _required_rrrrs(c, k, x, s, f):
     B_3_rrrrs_zx*h_3_rrrrs_x + B_3_rrrrs_zy*h_3_rrrrs_y + acc_3_rrrrs_z*rrrrs_link3_mass -
         h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
     )
-    # (rrrrs-N54) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrs-N63) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrrs_x = (
     B_2_rrrrs_yx*J_2_rrrrs_xz + B_2_rrrrs_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t_2 -
         W_2_rrrrs_t_3) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_t + g_r3_y*h_2_rrrrs_z -
@@ -5175,7 +5167,7 @@ def _required_rrrrs(c, k, x, s, f):
         J_2_rrrrs_xz*alpha_1_rrrrs_t + g_r3_x*h_2_rrrrs_y - B_2_rrrrs_xy*Sigma_2_rrrrs_yy -
         J_2_rrrrs_yz*alpha_1_rrrrs_t_2 - g_r3_y*h_2_rrrrs_x
     )
-    # (rrrrs-N58) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrs-N65) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrrs_x = mu_2_rrrrs_x + N_3_rrrrs_x*c_3_rrrrs - N_3_rrrrs_y*s_3_rrrrs
     N_2_rrrrs_y = (
     mu_2_rrrrs_y + N_3_rrrrs_x*s_3_rrrrs + N_3_rrrrs_y*c_3_rrrrs -
@@ -5185,17 +5177,16 @@ def _required_rrrrs(c, k, x, s, f):
     N_3_rrrrs_z + mu_2_rrrrs_z + rrrrs_joint3_offset_x*(c_3_rrrrs*f_3_rrrrs_y +
         f_3_rrrrs_x*s_3_rrrrs)
     )
-    # (rrrrs-N72) inertia moment of the links that turn with link 1, about their reference points
+    # (rrrrs-N75) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrrs_z = J_1_rrrrs_xx*qdd_1_rrrrs - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-    # (rrrrs-N76) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrs-N77) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrrs_z = mu_1_rrrrs_z + N_2_rrrrs_x*s_2_rrrrs - N_2_rrrrs_y*c_2_rrrrs_t
-    # (rrrrs-N84) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrrs_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_z
     G_rrrrs_t_2 = inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z)
-    # (rrrrs-N88) leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrs-N87) leg force on the platform without actuation and without the mass at the connection point
     c_rrrrs_x = (
-    h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - G_rrrrs_t_2 - B_4_rrrrs_xy*h_4_rrrrs_y -
-        B_4_rrrrs_xz*h_4_rrrrs_z
+    W_4_rrrrs_xx*h_4_rrrrs_x - G_rrrrs_t_2 - B_4_rrrrs_xy*h_4_rrrrs_y - B_4_rrrrs_xz*h_4_rrrrs_z
     )
     c_rrrrs_y = (
     h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_t - B_4_rrrrs_yx*h_4_rrrrs_x -
@@ -5221,7 +5212,7 @@ def _required_rrrrs(c, k, x, s, f):
     R_a_t = c_rrrrs_in_base_z*q_rrrrs_in_base_y - c_rrrrs_in_base_y*q_rrrrs_in_base_z
     R_a_t_2 = c_rrrrs_in_base_x*q_rrrrs_in_base_z - c_rrrrs_in_base_z*q_rrrrs_in_base_x
     R_a_t_3 = c_rrrrs_in_base_y*q_rrrrs_in_base_x - c_rrrrs_in_base_x*q_rrrrs_in_base_y
-    # (rrrrs-N94) inertia and weight of the leg along the extra freedom of joint 2
+    # (rrrrs-N93) inertia and weight of the leg along the extra freedom of joint 2
     P_2_rrrrs_t = G_rrrrs_t_2*r_2_rrrrs_r1_y - G_rrrrs_t*r_2_rrrrs_r1_x
     P_2_rrrrs = N_2_rrrrs_z + P_2_rrrrs_t
     ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
@@ -5492,7 +5483,7 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-A10) acceleration of joint 1
     qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x
     qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
-    # (rrrs-N11) acceleration of the reference point of link 3, less gravity
+    # (rrrs-N9) acceleration of the reference point of link 3, less gravity
     acc_3_rrrs_x = (
     S_ddot_rrrs_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
         axis_x_rrrs_axes3_z*gravity_z
@@ -5508,15 +5499,15 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-A16) angular acceleration of link 1
     alpha_1_rrrs_t = qdd_1_rrrs*s_2_rrrs
     alpha_1_rrrs_t_2 = c_2_rrrs*qdd_1_rrrs
-    # (rrrs-A21) angular acceleration of link 2
+    # (rrrs-A20) angular acceleration of link 2
     alpha_2_rrrs_x = zeta_2_rrrs_x - alpha_1_rrrs_t
     alpha_2_rrrs_y = -alpha_1_rrrs_t_2 - zeta_2_rrrs_y
-    # (rrrs-A24) acceleration tensor of link 2
+    # (rrrs-A22) acceleration tensor of link 2
     B_2_rrrs_xy = W_2_rrrs_xy + qdd_2_rrrs
     B_2_rrrs_yx = W_2_rrrs_xy - qdd_2_rrrs
     B_2_rrrs_zx = zeta_2_rrrs_y - alpha_2_rrrs_y
     B_2_rrrs_zy = alpha_2_rrrs_x + zeta_2_rrrs_x
-    # (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrs_x = (
     B_2_rrrs_yx*J_2_rrrs_xz + B_2_rrrs_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
         W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_zx*J_2_rrrs_xy -
@@ -5532,7 +5523,7 @@ def _required_rrrs(c, k, x, s, f):
         B_2_rrrs_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_t - J_2_rrrs_yz*alpha_1_rrrs_t_2 -
         g_r3_y_2*h_2_rrrs_x
     )
-    # (rrrs-A26) angular acceleration of link 3
+    # (rrrs-A24) angular acceleration of link 3
     alpha_3_rrrs_x = (
     alpha_2_rrrs_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_y*s_3_rrrs
     )
@@ -5540,14 +5531,14 @@ def _required_rrrs(c, k, x, s, f):
     alpha_3_rrrs_z = (
     inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x) - qdd_2_rrrs
     )
-    # (rrrs-A29) acceleration tensor of link 3
+    # (rrrs-A27) acceleration tensor of link 3
     B_3_rrrs_xy = W_3_rrrs_xy - alpha_3_rrrs_z
     B_3_rrrs_xz = W_3_rrrs_xz + alpha_3_rrrs_y
     B_3_rrrs_yx = W_3_rrrs_xy + alpha_3_rrrs_z
     B_3_rrrs_yz = W_3_rrrs_yz - alpha_3_rrrs_x
     B_3_rrrs_zx = W_3_rrrs_xz - alpha_3_rrrs_y
     B_3_rrrs_zy = W_3_rrrs_yz + alpha_3_rrrs_x
-    # (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrs_x = (
     B_3_rrrs_yx*J_3_rrrs_xz + B_3_rrrs_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
         W_3_rrrs_t_3) + acc_3_rrrs_z*h_3_rrrs_y - B_3_rrrs_yz*Sigma_3_rrrs_zz -
@@ -5563,17 +5554,17 @@ def _required_rrrs(c, k, x, s, f):
         W_3_rrrs_t_2) + acc_3_rrrs_y*h_3_rrrs_x - B_3_rrrs_xy*Sigma_3_rrrs_yy -
         B_3_rrrs_yz*J_3_rrrs_xz - acc_3_rrrs_x*h_3_rrrs_y
     )
-    # (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrs_x = mu_2_rrrs_x + c_3_rrrs*mu_3_rrrs_x + mu_3_rrrs_y*s_3_rrrs
     N_2_rrrs_y = mu_2_rrrs_y + c_3_rrrs*mu_3_rrrs_y - mu_3_rrrs_x*s_3_rrrs
     N_2_rrrs_z = mu_2_rrrs_z + mu_3_rrrs_z
-    # (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrs_z = J_1_rrrs_xx*qdd_1_rrrs - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-    # (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrs_z = mu_1_rrrs_z - N_2_rrrs_x*s_2_rrrs - N_2_rrrs_y*c_2_rrrs
-    # (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrs_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_z
-    # (rrrs-N49) leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
     c_rrrs_x = (
     h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_xy*h_3_rrrs_y - B_3_rrrs_xz*h_3_rrrs_z -
         inv_r_2_rrrs_r0_y*(G_rrrs_t*r_2_rrrs_r0_x - N_2_rrrs_z)
@@ -6224,7 +6215,7 @@ def _joint_rates_rrrs(c, k, x, s, f):
     return (ok, (), (qd_1_rrrs, -qd_2_rrrs, qd_3_rrrs,),)
 
 
-# joint_accelerations: 608 mul, 364 add, 12 div, 6 sqrt, 2 trig
+# joint_accelerations: 603 mul, 365 add, 12 div, 6 sqrt, 2 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -6514,47 +6505,45 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     beta_4_rrrrs_y = beta_3_rrrrs_r0_y - omega_3_rrrrs_r0_x*qd_4_rrrrs
     # (rrrrs-V22) angular velocity of link 4
     omega_4_rrrrs_z = omega_3_rrrrs_z + qd_4_rrrrs
+    # (rrrrs-V19) centripetal tensor of link 2
+    W_2_rrrrs_t = yd_2_rrrrs*yd_2_rrrrs
+    # (rrrrs-V21) centripetal tensor of link 3
+    W_3_rrrrs_t = omega_3_rrrrs_z*omega_3_rrrrs_z
+    # (rrrrs-V23) centripetal tensor of link 4
+    W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
+    W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
+    W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
     # (rrrrs-A9) acceleration of the connection point at zero joint accelerations
     bias_rrrrs_t = rrrrs_joint2_offset_x*s_2_rrrrs
     bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
     d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
     d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-    bias_rrrrs_t_3 = (
-    omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs) -
-        omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs)
-    )
-    bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x
-    bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs
-    d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs
-    d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs
-    bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs
-    bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs
-    bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x - d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x
-    bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs
-    bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z
-    bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z
-    bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x - bias_rrrrs_t_9*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x
-    bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x
+    d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
+    d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
+    bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
+    bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
+    d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
+    d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
+    bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
+    bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
     bias_rrrrs_x = (
-    bias_rrrrs_t_13*omega_3_rrrrs_r0_y + bias_rrrrs_t_3*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_8*omega_3_rrrrs_r0_y - bias_rrrrs_t_12*omega_3_rrrrs_z -
-        bias_rrrrs_t_14*omega_4_rrrrs_z - bias_rrrrs_t_15*omega_3_rrrrs_r0_y -
-        bias_rrrrs_t_7*yd_2_rrrrs
+    W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
+        W_4_rrrrs_t_2*d_2_rrrrs_r3_x - bias_rrrrs_t_5*(W_3_rrrrs_t + W_4_rrrrs_t_2) -
+        d_3_rrrrs_r1_x*(W_2_rrrrs_t + W_4_rrrrs_t_2) -
+        rrrrs_platform_joint_offset_x*(W_4_rrrrs_t_2 + omega_4_rrrrs_z*omega_4_rrrrs_z)
     )
     bias_rrrrs_y = (
-    bias_rrrrs_t_15*omega_3_rrrrs_r0_x - bias_rrrrs_t_11*omega_3_rrrrs_z -
-        bias_rrrrs_t_13*omega_3_rrrrs_r0_x - bias_rrrrs_t_3*omega_3_rrrrs_r0_x -
-        bias_rrrrs_t_6*yd_2_rrrrs - bias_rrrrs_t_8*omega_3_rrrrs_r0_x
+    W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
+        W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
+        bias_rrrrs_t_6*(W_3_rrrrs_t + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t + W_4_rrrrs_t)
     )
     bias_rrrrs_z = (
-    bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs - beta_3_rrrrs_y*s_4_rrrrs) +
-        bias_rrrrs_t_11*omega_3_rrrrs_r0_y + bias_rrrrs_t_12*omega_3_rrrrs_r0_x +
-        bias_rrrrs_t_14*omega_3_rrrrs_r0_x + bias_rrrrs_t_6*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_7*omega_3_rrrrs_r0_x + d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-        d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-        beta_4_rrrrs_y*rrrrs_platform_joint_offset_x
+    bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
+        bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
+        beta_3_rrrrs_y*s_4_rrrrs) +
+        rrrrs_platform_joint_offset_x*(omega_3_rrrrs_r0_x*omega_4_rrrrs_z - beta_4_rrrrs_y) +
+        2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+        2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
     )
     # (rrrrs-A2) acceleration of the connection point without its centripetal part
     a_p_rrrrs_x = t_ddot_x + alpha_y*q_rrrrs_in_base_z - alpha_z*q_rrrrs_in_base_y
@@ -6806,7 +6795,7 @@ def _joint_accelerations_rrrs(c, k, x, s, f):
     return (ok, (), (qdd_1_rrrs, -qdd_2_rrrs, qdd_3_rrrs,),)
 
 
-# legs: 1000 mul, 715 add, 12 div, 6 sqrt, 2 trig
+# legs: 988 mul, 715 add, 12 div, 6 sqrt, 2 trig
 def _legs_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -7118,6 +7107,7 @@ def _legs_rrrrs(c, k, x, s, f):
     W_4_rrrrs_t = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_x
     W_4_rrrrs_t_2 = omega_3_rrrrs_r0_y*omega_3_rrrrs_r0_y
     W_4_rrrrs_t_3 = omega_4_rrrrs_z*omega_4_rrrrs_z
+    W_4_rrrrs_xx = W_4_rrrrs_t_2 + W_4_rrrrs_t_3
     W_4_rrrrs_xy = omega_3_rrrrs_r0_x*omega_3_rrrrs_r0_y
     W_4_rrrrs_xz = omega_3_rrrrs_r0_x*omega_4_rrrrs_z
     W_4_rrrrs_yz = omega_3_rrrrs_r0_y*omega_4_rrrrs_z
@@ -7126,46 +7116,36 @@ def _legs_rrrrs(c, k, x, s, f):
     bias_rrrrs_t_2 = c_2_rrrrs_t*rrrrs_joint2_offset_x
     d_2_rrrrs_r2_x = bias_rrrrs_t*c_3_rrrrs - bias_rrrrs_t_2*s_3_rrrrs
     d_2_rrrrs_r2_y = -bias_rrrrs_t*s_3_rrrrs - bias_rrrrs_t_2*c_3_rrrrs
-    bias_rrrrs_t_3 = (
-    omega_3_rrrrs_r0_x*(c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs) -
-        omega_3_rrrrs_r0_y*(c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs)
-    )
-    bias_rrrrs_t_4 = c_3_rrrrs*rrrrs_joint3_offset_x
-    bias_rrrrs_t_5 = rrrrs_joint3_offset_x*s_3_rrrrs
-    d_3_rrrrs_r1_x = bias_rrrrs_t_4*c_4_rrrrs + bias_rrrrs_t_5*s_4_rrrrs
-    d_3_rrrrs_r1_y = bias_rrrrs_t_4*s_4_rrrrs - bias_rrrrs_t_5*c_4_rrrrs
-    bias_rrrrs_t_6 = d_3_rrrrs_r1_y*yd_2_rrrrs
-    bias_rrrrs_t_7 = d_3_rrrrs_r1_x*yd_2_rrrrs
-    bias_rrrrs_t_8 = d_3_rrrrs_r1_y*omega_3_rrrrs_r0_x - d_3_rrrrs_r1_x*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_9 = c_4_rrrrs*rrrrs_joint4_offset_x
-    bias_rrrrs_t_10 = rrrrs_joint4_offset_x*s_4_rrrrs
-    bias_rrrrs_t_11 = bias_rrrrs_t_10*omega_3_rrrrs_z
-    bias_rrrrs_t_12 = bias_rrrrs_t_9*omega_3_rrrrs_z
-    bias_rrrrs_t_13 = bias_rrrrs_t_10*omega_3_rrrrs_r0_x - bias_rrrrs_t_9*omega_3_rrrrs_r0_y
-    bias_rrrrs_t_14 = omega_4_rrrrs_z*rrrrs_platform_joint_offset_x
-    bias_rrrrs_t_15 = omega_3_rrrrs_r0_y*rrrrs_platform_joint_offset_x
+    d_2_rrrrs_r3_x = c_4_rrrrs*d_2_rrrrs_r2_x - d_2_rrrrs_r2_y*s_4_rrrrs
+    d_2_rrrrs_r3_y = c_4_rrrrs*d_2_rrrrs_r2_y + d_2_rrrrs_r2_x*s_4_rrrrs
+    bias_rrrrs_t_3 = c_3_rrrrs*rrrrs_joint3_offset_x
+    bias_rrrrs_t_4 = rrrrs_joint3_offset_x*s_3_rrrrs
+    d_3_rrrrs_r1_x = bias_rrrrs_t_3*c_4_rrrrs + bias_rrrrs_t_4*s_4_rrrrs
+    d_3_rrrrs_r1_y = bias_rrrrs_t_3*s_4_rrrrs - bias_rrrrs_t_4*c_4_rrrrs
+    bias_rrrrs_t_5 = c_4_rrrrs*rrrrs_joint4_offset_x
+    bias_rrrrs_t_6 = rrrrs_joint4_offset_x*s_4_rrrrs
     bias_rrrrs_x = (
-    bias_rrrrs_t_13*omega_3_rrrrs_r0_y + bias_rrrrs_t_3*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_8*omega_3_rrrrs_r0_y - bias_rrrrs_t_12*omega_3_rrrrs_z -
-        bias_rrrrs_t_14*omega_4_rrrrs_z - bias_rrrrs_t_15*omega_3_rrrrs_r0_y -
-        bias_rrrrs_t_7*yd_2_rrrrs
+    W_4_rrrrs_xy*bias_rrrrs_t_6 + W_4_rrrrs_xy*d_2_rrrrs_r3_y + W_4_rrrrs_xy*d_3_rrrrs_r1_y -
+        W_4_rrrrs_t_2*d_2_rrrrs_r3_x - W_4_rrrrs_xx*rrrrs_platform_joint_offset_x -
+        bias_rrrrs_t_5*(W_3_rrrrs_t_3 + W_4_rrrrs_t_2) - d_3_rrrrs_r1_x*(W_2_rrrrs_t_2 +
+        W_4_rrrrs_t_2)
     )
     bias_rrrrs_y = (
-    bias_rrrrs_t_15*omega_3_rrrrs_r0_x - bias_rrrrs_t_11*omega_3_rrrrs_z -
-        bias_rrrrs_t_13*omega_3_rrrrs_r0_x - bias_rrrrs_t_3*omega_3_rrrrs_r0_x -
-        bias_rrrrs_t_6*yd_2_rrrrs - bias_rrrrs_t_8*omega_3_rrrrs_r0_x
+    W_4_rrrrs_xy*bias_rrrrs_t_5 + W_4_rrrrs_xy*d_2_rrrrs_r3_x + W_4_rrrrs_xy*d_3_rrrrs_r1_x +
+        W_4_rrrrs_xy*rrrrs_platform_joint_offset_x - W_4_rrrrs_t*d_2_rrrrs_r3_y -
+        bias_rrrrs_t_6*(W_3_rrrrs_t_3 + W_4_rrrrs_t) - d_3_rrrrs_r1_y*(W_2_rrrrs_t_2 +
+        W_4_rrrrs_t)
     )
     bias_rrrrs_z = (
-    bias_rrrrs_t_10*(beta_3_rrrrs_x*c_4_rrrrs - beta_3_rrrrs_y*s_4_rrrrs) +
-        bias_rrrrs_t_11*omega_3_rrrrs_r0_y + bias_rrrrs_t_12*omega_3_rrrrs_r0_x +
-        bias_rrrrs_t_14*omega_3_rrrrs_r0_x + bias_rrrrs_t_6*omega_3_rrrrs_r0_y +
-        bias_rrrrs_t_7*omega_3_rrrrs_r0_x + d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
-        d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs - beta_3_rrrrs_r0_y*bias_rrrrs_t_9 -
-        beta_4_rrrrs_y*rrrrs_platform_joint_offset_x
+    bias_rrrrs_t_5*(omega_3_rrrrs_r0_x*omega_3_rrrrs_z - beta_3_rrrrs_r0_y) +
+        bias_rrrrs_t_6*(beta_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*omega_3_rrrrs_z -
+        beta_3_rrrrs_y*s_4_rrrrs) + rrrrs_platform_joint_offset_x*(W_4_rrrrs_xz - beta_4_rrrrs_y)
+        + 2.0*d_3_rrrrs_r1_x*omega_3_rrrrs_r0_x*yd_2_rrrrs +
+        2.0*d_3_rrrrs_r1_y*omega_3_rrrrs_r0_y*yd_2_rrrrs
     )
-    # (rrrrs-A52) remainder without the acceleration in: acceleration of the origin of joint 3
+    # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
     a_o3_rrrrs_o_t = rrrrs_joint3_offset_x*(W_2_rrrrs_t + W_2_rrrrs_t_2)
-    # (rrrrs-N14) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_x = g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x
     g_r1_y = -c_1_rrrrs*g_r0_y - g_r0_x*s_1_rrrrs
     g_r3_x = g_r0_z*s_2_rrrrs - c_2_rrrrs_t*g_r1_y
@@ -7205,7 +7185,7 @@ def _legs_rrrrs(c, k, x, s, f):
     # (rrrrs-A13) acceleration of joint 1
     qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x
     qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
-    # (rrrrs-N23) acceleration of the reference point of link 4, less gravity
+    # (rrrrs-N15) acceleration of the reference point of link 4, less gravity
     acc_4_rrrrs_x = (
     S_ddot_rrrrs_tip_x - axis_x_rrrrs_axes4_x*gravity_x - axis_x_rrrrs_axes4_y*gravity_y -
         axis_x_rrrrs_axes4_z*gravity_z
@@ -7221,16 +7201,16 @@ def _legs_rrrrs(c, k, x, s, f):
     # (rrrrs-A22) angular acceleration of link 1
     alpha_1_rrrrs_t = qdd_1_rrrrs*s_2_rrrrs
     alpha_1_rrrrs_t_2 = c_2_rrrrs_t*qdd_1_rrrrs
-    # (rrrrs-A28) angular acceleration of link 2
+    # (rrrrs-A26) angular acceleration of link 2
     alpha_2_rrrrs_x = alpha_1_rrrrs_t - zeta_2_rrrrs_x
     alpha_2_rrrrs_y = -alpha_1_rrrrs_t_2 - zeta_2_rrrrs_y
-    # (rrrrs-A31) acceleration tensor of link 2
+    # (rrrrs-A28) acceleration tensor of link 2
     B_2_rrrrs_yx = ydd_2_rrrrs - W_2_rrrrs_xy
     B_2_rrrrs_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_y
     B_2_rrrrs_zy = alpha_2_rrrrs_x - zeta_2_rrrrs_x
-    # (rrrrs-A49) acceleration of the origin of joint 3
+    # (rrrrs-A41) acceleration of the origin of joint 3
     a_o3_rrrrs_t = B_2_rrrrs_yx*rrrrs_joint3_offset_x
-    # (rrrrs-N13) acceleration of the reference point of link 3, less gravity
+    # (rrrrs-N9) acceleration of the reference point of link 3, less gravity
     acc_3_rrrrs_x = (
     a_o3_rrrrs_t*s_3_rrrrs - a_o3_rrrrs_o_t*c_3_rrrrs - c_3_rrrrs*g_r3_x - g_r3_y*s_3_rrrrs
     )
@@ -7238,18 +7218,18 @@ def _legs_rrrrs(c, k, x, s, f):
     a_o3_rrrrs_o_t*s_3_rrrrs + a_o3_rrrrs_t*c_3_rrrrs + g_r3_x*s_3_rrrrs - c_3_rrrrs*g_r3_y
     )
     acc_3_rrrrs_z = B_2_rrrrs_zx*rrrrs_joint3_offset_x - g_r1_x
-    # (rrrrs-A33) angular acceleration of link 3
+    # (rrrrs-A30) angular acceleration of link 3
     alpha_3_rrrrs_x = alpha_2_rrrrs_x*c_3_rrrrs + alpha_2_rrrrs_y*s_3_rrrrs - zeta_3_rrrrs_x
     alpha_3_rrrrs_y = zeta_3_rrrrs_y + alpha_2_rrrrs_y*c_3_rrrrs - alpha_2_rrrrs_x*s_3_rrrrs
     alpha_3_rrrrs_z = ydd_2_rrrrs - qdd_3_rrrrs
-    # (rrrrs-A37) acceleration tensor of link 3
+    # (rrrrs-A32) acceleration tensor of link 3
     B_3_rrrrs_xy = W_3_rrrrs_xy - alpha_3_rrrrs_z
     B_3_rrrrs_xz = W_3_rrrrs_xz + alpha_3_rrrrs_y
     B_3_rrrrs_yx = W_3_rrrrs_xy + alpha_3_rrrrs_z
     B_3_rrrrs_yz = W_3_rrrrs_yz - alpha_3_rrrrs_x
     B_3_rrrrs_zx = W_3_rrrrs_xz - alpha_3_rrrrs_y
     B_3_rrrrs_zy = W_3_rrrrs_yz + alpha_3_rrrrs_x
-    # (rrrrs-N40) inertia moment of the links that turn with link 3, about their reference points
+    # (rrrrs-N53) inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrrs_x = (
     B_3_rrrrs_yx*J_3_rrrrs_xz + B_3_rrrrs_zy*Sigma_3_rrrrs_yy + J_3_rrrrs_yz*(W_3_rrrrs_t_2 -
         W_3_rrrrs_t_3) + acc_3_rrrrs_z*h_3_rrrrs_y - B_3_rrrrs_yz*Sigma_3_rrrrs_zz -
@@ -7265,7 +7245,7 @@ def _legs_rrrrs(c, k, x, s, f):
         W_3_rrrrs_t_2) + acc_3_rrrrs_y*h_3_rrrrs_x - B_3_rrrrs_xy*Sigma_3_rrrrs_yy -
         B_3_rrrrs_yz*J_3_rrrrs_xz - acc_3_rrrrs_x*h_3_rrrrs_y
     )
-    # (rrrrs-A39) angular acceleration of link 4
+    # (rrrrs-A34) angular acceleration of link 4
     alpha_4_rrrrs_x = (
     alpha_3_rrrrs_x*c_4_rrrrs + omega_3_rrrrs_r0_y*qd_4_rrrrs - alpha_3_rrrrs_y*s_4_rrrrs
     )
@@ -7273,14 +7253,14 @@ def _legs_rrrrs(c, k, x, s, f):
     alpha_4_rrrrs_z = (
     alpha_3_rrrrs_z + inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x)
     )
-    # (rrrrs-A43) acceleration tensor of link 4
+    # (rrrrs-A37) acceleration tensor of link 4
     B_4_rrrrs_xy = W_4_rrrrs_xy - alpha_4_rrrrs_z
     B_4_rrrrs_xz = W_4_rrrrs_xz + alpha_4_rrrrs_y
     B_4_rrrrs_yx = W_4_rrrrs_xy + alpha_4_rrrrs_z
     B_4_rrrrs_yz = W_4_rrrrs_yz - alpha_4_rrrrs_x
     B_4_rrrrs_zx = W_4_rrrrs_xz - alpha_4_rrrrs_y
     B_4_rrrrs_zy = W_4_rrrrs_yz + alpha_4_rrrrs_x
-    # (rrrrs-N30) inertia moment of the links that turn with link 4, about their reference points
+    # (rrrrs-N45) inertia moment of the links that turn with link 4, about their reference points
     mu_4_rrrrs_x = (
     B_4_rrrrs_yx*J_4_rrrrs_xz + B_4_rrrrs_zy*Sigma_4_rrrrs_yy + J_4_rrrrs_yz*(W_4_rrrrs_t_2 -
         W_4_rrrrs_t_3) + acc_4_rrrrs_z*h_4_rrrrs_y - B_4_rrrrs_yz*Sigma_4_rrrrs_zz -
@@ -7296,16 +7276,16 @@ def _legs_rrrrs(c, k, x, s, f):
         W_4_rrrrs_t_2) + acc_4_rrrrs_y*h_4_rrrrs_x - B_4_rrrrs_xy*Sigma_4_rrrrs_yy -
         B_4_rrrrs_yz*J_4_rrrrs_xz - acc_4_rrrrs_x*h_4_rrrrs_y
     )
-    # (rrrrs-N44) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
+    # (rrrrs-N55) moment about joint 3 of the links from 3 outwards, the force at the connection point left out
     N_3_rrrrs_x = mu_3_rrrrs_x + c_4_rrrrs*mu_4_rrrrs_x + mu_4_rrrrs_y*s_4_rrrrs
     N_3_rrrrs_y = mu_3_rrrrs_y + c_4_rrrrs*mu_4_rrrrs_y - mu_4_rrrrs_x*s_4_rrrrs
     N_3_rrrrs_z = mu_3_rrrrs_z + mu_4_rrrrs_z
-    # (rrrrs-N19) inertia force of link 3 less its weight
+    # (rrrrs-N13) inertia force of link 3 less its weight
     f_3_rrrrs_z = (
     B_3_rrrrs_zx*h_3_rrrrs_x + B_3_rrrrs_zy*h_3_rrrrs_y + acc_3_rrrrs_z*rrrrs_link3_mass -
         h_3_rrrrs_z*(W_3_rrrrs_t + W_3_rrrrs_t_2)
     )
-    # (rrrrs-N54) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrrs-N63) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrrs_x = (
     B_2_rrrrs_yx*J_2_rrrrs_xz + B_2_rrrrs_zy*Sigma_2_rrrrs_yy + J_2_rrrrs_yz*(W_2_rrrrs_t -
         W_2_rrrrs_t_2) + Sigma_2_rrrrs_zz*alpha_1_rrrrs_t + g_r3_y*h_2_rrrrs_z -
@@ -7317,22 +7297,22 @@ def _legs_rrrrs(c, k, x, s, f):
         J_2_rrrrs_yz*(-W_2_rrrrs_xy - ydd_2_rrrrs) - Sigma_2_rrrrs_zz*alpha_1_rrrrs_t_2 -
         g_r3_x*h_2_rrrrs_z
     )
-    # (rrrrs-N58) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrrs-N65) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrrs_x = mu_2_rrrrs_x + N_3_rrrrs_x*c_3_rrrrs - N_3_rrrrs_y*s_3_rrrrs
     N_2_rrrrs_y = (
     mu_2_rrrrs_y + N_3_rrrrs_x*s_3_rrrrs + N_3_rrrrs_y*c_3_rrrrs -
         f_3_rrrrs_z*rrrrs_joint3_offset_x
     )
-    # (rrrrs-N72) inertia moment of the links that turn with link 1, about their reference points
+    # (rrrrs-N75) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrrs_z = J_1_rrrrs_xx*qdd_1_rrrrs - g_r1_x*h_1_rrrrs_y - g_r1_y*h_1_rrrrs_z
-    # (rrrrs-N76) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrrs-N77) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrrs_z = mu_1_rrrrs_z + N_2_rrrrs_x*s_2_rrrrs - N_2_rrrrs_y*c_2_rrrrs_t
-    # (rrrrs-N84) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrrs_t = inv_rrrrs_platform_joint_offset_x*mu_4_rrrrs_z
-    # (rrrrs-N88) leg force on the platform without actuation and without the mass at the connection point
+    # (rrrrs-N87) leg force on the platform without actuation and without the mass at the connection point
     c_rrrrs_x = (
-    h_4_rrrrs_x*(W_4_rrrrs_t_2 + W_4_rrrrs_t_3) - B_4_rrrrs_xy*h_4_rrrrs_y -
-        B_4_rrrrs_xz*h_4_rrrrs_z - inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z)
+    W_4_rrrrs_xx*h_4_rrrrs_x - B_4_rrrrs_xy*h_4_rrrrs_y - B_4_rrrrs_xz*h_4_rrrrs_z -
+        inv_r_3_rrrrs_r0_y*(G_rrrrs_t*r_3_rrrrs_r0_x - N_3_rrrrs_z)
     )
     c_rrrrs_y = (
     h_4_rrrrs_y*(W_4_rrrrs_t + W_4_rrrrs_t_3) - G_rrrrs_t - B_4_rrrrs_yx*h_4_rrrrs_x -
@@ -7342,7 +7322,7 @@ def _legs_rrrrs(c, k, x, s, f):
     h_4_rrrrs_z*(W_4_rrrrs_t + W_4_rrrrs_t_2) - B_4_rrrrs_zx*h_4_rrrrs_x -
         B_4_rrrrs_zy*h_4_rrrrs_y - N_1_rrrrs_z*inv_v_1_rrrrs_z
     )
-    # (rrrrs-N93) leg force on the platform without actuation, the last link's mass included
+    # (rrrrs-N92) leg force on the platform without actuation, the last link's mass included
     c_true_rrrrs_x = c_rrrrs_x - acc_4_rrrrs_x*rrrrs_link4_mass
     c_true_rrrrs_y = c_rrrrs_y - acc_4_rrrrs_y*rrrrs_link4_mass
     c_true_rrrrs_z = c_rrrrs_z - acc_4_rrrrs_z*rrrrs_link4_mass
@@ -7617,7 +7597,7 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-A10) acceleration of joint 1
     qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x
     qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
-    # (rrrs-N11) acceleration of the reference point of link 3, less gravity
+    # (rrrs-N9) acceleration of the reference point of link 3, less gravity
     acc_3_rrrs_x = (
     S_ddot_rrrs_tip_x - axis_x_rrrs_axes3_x*gravity_x - axis_x_rrrs_axes3_y*gravity_y -
         axis_x_rrrs_axes3_z*gravity_z
@@ -7633,15 +7613,15 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-A16) angular acceleration of link 1
     alpha_1_rrrs_t = qdd_1_rrrs*s_2_rrrs
     alpha_1_rrrs_t_2 = c_2_rrrs*qdd_1_rrrs
-    # (rrrs-A21) angular acceleration of link 2
+    # (rrrs-A20) angular acceleration of link 2
     alpha_2_rrrs_x = zeta_2_rrrs_x - alpha_1_rrrs_t
     alpha_2_rrrs_y = -alpha_1_rrrs_t_2 - zeta_2_rrrs_y
-    # (rrrs-A24) acceleration tensor of link 2
+    # (rrrs-A22) acceleration tensor of link 2
     B_2_rrrs_xy = W_2_rrrs_xy + qdd_2_rrrs
     B_2_rrrs_yx = W_2_rrrs_xy - qdd_2_rrrs
     B_2_rrrs_zx = zeta_2_rrrs_y - alpha_2_rrrs_y
     B_2_rrrs_zy = alpha_2_rrrs_x + zeta_2_rrrs_x
-    # (rrrs-N26) inertia moment of the links that turn with link 2, about their reference points
+    # (rrrs-N36) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrrs_x = (
     B_2_rrrs_yx*J_2_rrrs_xz + B_2_rrrs_zy*Sigma_2_rrrs_yy + J_2_rrrs_yz*(W_2_rrrs_t_2 -
         W_2_rrrs_t_3) + g_r3_y_2*h_2_rrrs_z - B_2_rrrs_zx*J_2_rrrs_xy -
@@ -7657,7 +7637,7 @@ def _legs_rrrs(c, k, x, s, f):
         B_2_rrrs_xy*Sigma_2_rrrs_yy - J_2_rrrs_xz*alpha_1_rrrs_t - J_2_rrrs_yz*alpha_1_rrrs_t_2 -
         g_r3_y_2*h_2_rrrs_x
     )
-    # (rrrs-A26) angular acceleration of link 3
+    # (rrrs-A24) angular acceleration of link 3
     alpha_3_rrrs_x = (
     alpha_2_rrrs_x*c_3_rrrs + omega_2_rrrs_r0_y*qd_3_rrrs - alpha_2_rrrs_y*s_3_rrrs
     )
@@ -7665,14 +7645,14 @@ def _legs_rrrs(c, k, x, s, f):
     alpha_3_rrrs_z = (
     inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x) - qdd_2_rrrs
     )
-    # (rrrs-A29) acceleration tensor of link 3
+    # (rrrs-A27) acceleration tensor of link 3
     B_3_rrrs_xy = W_3_rrrs_xy - alpha_3_rrrs_z
     B_3_rrrs_xz = W_3_rrrs_xz + alpha_3_rrrs_y
     B_3_rrrs_yx = W_3_rrrs_xy + alpha_3_rrrs_z
     B_3_rrrs_yz = W_3_rrrs_yz - alpha_3_rrrs_x
     B_3_rrrs_zx = W_3_rrrs_xz - alpha_3_rrrs_y
     B_3_rrrs_zy = W_3_rrrs_yz + alpha_3_rrrs_x
-    # (rrrs-N18) inertia moment of the links that turn with link 3, about their reference points
+    # (rrrs-N29) inertia moment of the links that turn with link 3, about their reference points
     mu_3_rrrs_x = (
     B_3_rrrs_yx*J_3_rrrs_xz + B_3_rrrs_zy*Sigma_3_rrrs_yy + J_3_rrrs_yz*(W_3_rrrs_t_2 -
         W_3_rrrs_t_3) + acc_3_rrrs_z*h_3_rrrs_y - B_3_rrrs_yz*Sigma_3_rrrs_zz -
@@ -7688,17 +7668,17 @@ def _legs_rrrs(c, k, x, s, f):
         W_3_rrrs_t_2) + acc_3_rrrs_y*h_3_rrrs_x - B_3_rrrs_xy*Sigma_3_rrrs_yy -
         B_3_rrrs_yz*J_3_rrrs_xz - acc_3_rrrs_x*h_3_rrrs_y
     )
-    # (rrrs-N29) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (rrrs-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_rrrs_x = mu_2_rrrs_x + c_3_rrrs*mu_3_rrrs_x + mu_3_rrrs_y*s_3_rrrs
     N_2_rrrs_y = mu_2_rrrs_y + c_3_rrrs*mu_3_rrrs_y - mu_3_rrrs_x*s_3_rrrs
     N_2_rrrs_z = mu_2_rrrs_z + mu_3_rrrs_z
-    # (rrrs-N37) inertia moment of the links that turn with link 1, about their reference points
+    # (rrrs-N45) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrrs_z = J_1_rrrs_xx*qdd_1_rrrs - g_r1_x_2*h_1_rrrs_y - g_r1_y_2*h_1_rrrs_z
-    # (rrrs-N40) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrrs-N47) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrrs_z = mu_1_rrrs_z - N_2_rrrs_x*s_2_rrrs - N_2_rrrs_y*c_2_rrrs
-    # (rrrs-N46) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrrs_t = inv_rrrs_platform_joint_offset_x*mu_3_rrrs_z
-    # (rrrs-N49) leg force on the platform without actuation and without the mass at the connection point
+    # (rrrs-N55) leg force on the platform without actuation and without the mass at the connection point
     c_rrrs_x = (
     h_3_rrrs_x*(W_3_rrrs_t_2 + W_3_rrrs_t_3) - B_3_rrrs_xy*h_3_rrrs_y - B_3_rrrs_xz*h_3_rrrs_z -
         inv_r_2_rrrs_r0_y*(G_rrrs_t*r_2_rrrs_r0_x - N_2_rrrs_z)
@@ -7711,7 +7691,7 @@ def _legs_rrrs(c, k, x, s, f):
     h_3_rrrs_z*(W_3_rrrs_t + W_3_rrrs_t_2) - B_3_rrrs_zx*h_3_rrrs_x - B_3_rrrs_zy*h_3_rrrs_y -
         N_1_rrrs_z*inv_v_1_rrrs_z
     )
-    # (rrrs-N54) leg force on the platform without actuation, the last link's mass included
+    # (rrrs-N60) leg force on the platform without actuation, the last link's mass included
     c_true_rrrs_x = c_rrrs_x - acc_3_rrrs_x*rrrs_link3_mass
     c_true_rrrs_y = c_rrrs_y - acc_3_rrrs_y*rrrs_link3_mass
     c_true_rrrs_z = c_rrrs_z - acc_3_rrrs_z*rrrs_link3_mass
@@ -7872,12 +7852,12 @@ def _potential_rrrrs(c, k, x, s, f):
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
     # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-    # (V1) potential energy
-    b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs
-    b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs
     # (rrrrs-G6) first moment of link 3 about the origin of link 3
     h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
     h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
+    # (V1) potential energy
+    b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs
+    b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs
     # (rrrrs-G9) first moment of link 4 about the connection point
     h_4_rrrrs_r0_x = c_4_rrrrs*h_4_rrrrs_x + h_4_rrrrs_y*s_4_rrrrs
     h_4_rrrrs_r0_y = c_4_rrrrs*h_4_rrrrs_y - h_4_rrrrs_x*s_4_rrrrs
@@ -8031,22 +8011,24 @@ arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
 (),
 ('J_1_rrrrs_xx', 'J_2_rrrrs_xx', 'J_2_rrrrs_xy', 'J_2_rrrrs_xz', 'J_2_rrrrs_yy', 'J_2_rrrrs_yz',
             'J_2_rrrrs_zz', 'J_3_rrrrs_xx', 'J_3_rrrrs_xy', 'J_3_rrrrs_xz', 'J_3_rrrrs_yy',
-            'J_3_rrrrs_yz', 'J_3_rrrrs_zz', 'J_4_rrrrs_xx', 'J_4_rrrrs_xy', 'J_4_rrrrs_xz',
-            'J_4_rrrrs_yy', 'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2',
-            'Sigma_2_rrrrs_xx', 'Sigma_2_rrrrs_yy', 'Sigma_2_rrrrs_zz', 'Sigma_3_rrrrs_xx',
-            'Sigma_3_rrrrs_yy', 'Sigma_3_rrrrs_zz', 'Sigma_4_rrrrs_xx', 'Sigma_4_rrrrs_yy',
-            'Sigma_4_rrrrs_zz', 'branch_1_rrrrs', 'branch_3_rrrrs', 'g_r0_x', 'g_r0_y', 'g_r0_z',
+            'J_3_rrrrs_yz', 'J_4_rrrrs_xx', 'J_4_rrrrs_xy', 'J_4_rrrrs_xz', 'J_4_rrrrs_yy',
+            'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Jc_1_rrrrs_t', 'Jc_2_rrrrs_t_2', 'Jc_2_rrrrs_t_3',
+            'Jc_3_rrrrs_zz', 'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'Sigma_2_rrrrs_xx',
+            'Sigma_2_rrrrs_yy', 'Sigma_2_rrrrs_zz', 'Sigma_3_rrrrs_xx', 'Sigma_3_rrrrs_yy',
+            'Sigma_3_rrrrs_zz', 'Sigma_4_rrrrs_xx', 'Sigma_4_rrrrs_yy', 'Sigma_4_rrrrs_zz',
+            'branch_1_rrrrs', 'branch_3_rrrrs', 'd_G_rrrrs_t', 'd_Gamma_3_rrrrs_t',
+            'd_Gamma_3_rrrrs_y', 'd_c_rrrrs_yy', 'd_phi_4_rrrrs_t', 'g_r0_x', 'g_r0_y', 'g_r0_z',
             'h_1_rrrrs_y', 'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_2_rrrrs_z',
             'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x', 'h_4_rrrrs_y',
-            'h_4_rrrrs_z', 'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7',
-            'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy',
-            'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy',
-            'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy',
-            'rrrrs_base_frame_zz', 'rrrrs_base_point_x', 'rrrrs_base_point_y',
-            'rrrrs_base_point_z', 'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x',
-            'rrrrs_joint4_offset_x', 'rrrrs_link3_mass', 'rrrrs_platform_joint_offset_x',
-            'rrrrs_platform_point_x', 'rrrrs_platform_point_y', 'rrrrs_platform_point_z',
-            'size_rrrrs', 'size_rrrrs_t_8'),
+            'h_4_rrrrs_z', 'hc_2_rrrrs_t', 'inv_rrrrs_platform_joint_offset_x',
+            'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
+            'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx',
+            'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx',
+            'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz', 'rrrrs_base_point_x',
+            'rrrrs_base_point_y', 'rrrrs_base_point_z', 'rrrrs_joint2_offset_x',
+            'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x', 'rrrrs_link3_mass',
+            'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
 (('X', (7,)), ('V', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -8086,19 +8068,20 @@ arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
             "rrrs",
 (),
 ('J_1_rrrs_xx', 'J_2_rrrs_xx', 'J_2_rrrs_xy', 'J_2_rrrs_xz', 'J_2_rrrs_yy', 'J_2_rrrs_yz',
-            'J_2_rrrs_zz', 'J_3_rrrs_xx', 'J_3_rrrs_xy', 'J_3_rrrs_xz', 'J_3_rrrs_yy',
-            'J_3_rrrs_yz', 'J_3_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'Sigma_2_rrrs_xx',
-            'Sigma_2_rrrs_yy', 'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx', 'Sigma_3_rrrs_yy',
-            'Sigma_3_rrrs_zz', 'branch_1_rrrs', 'branch_2_rrrs', 'g_r0_x_2', 'g_r0_y_2',
-            'g_r0_z_2', 'h_1_rrrs_y', 'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z',
-            'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x',
-            'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx',
-            'rrrs_base_frame_xy', 'rrrs_base_frame_xz', 'rrrs_base_frame_yx',
-            'rrrs_base_frame_yy', 'rrrs_base_frame_yz', 'rrrs_base_frame_zx',
-            'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y',
-            'rrrs_base_point_z', 'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x',
-            'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'J_3_rrrs_xx', 'J_3_rrrs_xy', 'J_3_rrrs_xz', 'J_3_rrrs_yy', 'J_3_rrrs_yz',
+            'J_3_rrrs_zz', 'Jc_1_rrrs_t', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2',
+            'Sigma_2_rrrs_xx', 'Sigma_2_rrrs_yy', 'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx',
+            'Sigma_3_rrrs_yy', 'Sigma_3_rrrs_zz', 'branch_1_rrrs', 'branch_2_rrrs',
+            'd_Gamma_2_rrrs_t', 'd_Gamma_2_rrrs_y', 'd_c_rrrs_yy', 'd_phi_3_rrrs_t', 'g_r0_x_2',
+            'g_r0_y_2', 'g_r0_z_2', 'h_1_rrrs_y', 'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y',
+            'h_2_rrrs_z', 'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
+            'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
+            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
+            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
+            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
+            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -8148,16 +8131,18 @@ arrays=(('M', (7, 7)),),
 (),
 ('J_1_rrrrs_xx', 'J_2_rrrrs_xx', 'J_2_rrrrs_xy', 'J_2_rrrrs_xz', 'J_2_rrrrs_yy', 'J_2_rrrrs_yz',
             'J_2_rrrrs_zz', 'J_3_rrrrs_xx', 'J_3_rrrrs_xy', 'J_3_rrrrs_xz', 'J_3_rrrrs_yy',
-            'J_3_rrrrs_yz', 'J_3_rrrrs_zz', 'J_4_rrrrs_xx', 'J_4_rrrrs_xy', 'J_4_rrrrs_xz',
-            'J_4_rrrrs_yy', 'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2',
-            'branch_1_rrrrs', 'branch_3_rrrrs', 'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z',
-            'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z', 'inv_rrrrs_platform_joint_offset_x',
-            'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
-            'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx',
-            'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx',
-            'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz', 'rrrrs_base_point_x',
-            'rrrrs_base_point_y', 'rrrrs_base_point_z', 'rrrrs_joint2_offset_x',
-            'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x', 'rrrrs_link3_mass',
+            'J_3_rrrrs_yz', 'J_4_rrrrs_xx', 'J_4_rrrrs_xy', 'J_4_rrrrs_xz', 'J_4_rrrrs_yy',
+            'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Jc_1_rrrrs_t', 'Jc_2_rrrrs_t_2', 'Jc_2_rrrrs_t_3',
+            'Jc_3_rrrrs_zz', 'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs',
+            'd_G_rrrrs_t', 'd_Gamma_3_rrrrs_t', 'd_Gamma_3_rrrrs_y', 'd_c_rrrrs_yy',
+            'd_phi_4_rrrrs_t', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_3_rrrrs_x', 'h_3_rrrrs_y',
+            'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z', 'hc_2_rrrrs_t',
+            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
+            'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
+            'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
+            'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
+            'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
+            'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
             'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
 (('X', (7,)),),
@@ -8184,16 +8169,18 @@ arrays=(('M', (7, 7)),),
             "rrrs",
 (),
 ('J_1_rrrs_xx', 'J_2_rrrs_xx', 'J_2_rrrs_xy', 'J_2_rrrs_xz', 'J_2_rrrs_yy', 'J_2_rrrs_yz',
-            'J_2_rrrs_zz', 'J_3_rrrs_xx', 'J_3_rrrs_xy', 'J_3_rrrs_xz', 'J_3_rrrs_yy',
-            'J_3_rrrs_yz', 'J_3_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs',
-            'branch_2_rrrs', 'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
-            'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'J_3_rrrs_xx', 'J_3_rrrs_xy', 'J_3_rrrs_xz', 'J_3_rrrs_yy', 'J_3_rrrs_yz',
+            'J_3_rrrs_zz', 'Jc_1_rrrs_t', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2',
+            'branch_1_rrrs', 'branch_2_rrrs', 'd_Gamma_2_rrrs_t', 'd_Gamma_2_rrrs_y',
+            'd_c_rrrs_yy', 'd_phi_3_rrrs_t', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_3_rrrs_x',
+            'h_3_rrrs_y', 'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6',
+            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
+            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
+            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
+            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
+            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
+            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z',
+            'size_rrrs', 'size_rrrs_t_8'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

@@ -383,7 +383,7 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         /* (L3) inertia tensor about the platform origin */
         const real J_star_t_5 = prr_link2_mass*size_t_2;
         const real J_star_t_6 = prr_link2_mass*size_t_3;
-        /* (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
         const real g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
@@ -450,7 +450,7 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 358 mul, 237 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 349 mul, 231 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
@@ -569,27 +569,25 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real w_1_t = inv_v_2_t_2*v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
-        /* (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight */
-        const real d_f_1_xx = prr_link1_mass*w_1_r0_x;
-        const real d_f_1_xy = prr_link1_mass*w_1_r0_y;
+        /* (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t = inv_v_2_t_2*prr_link1_mass*v_2_t;
+        const real _r0_y_2 = c_2*d_Gamma_1_t - prr_link1_mass*s_2;
         /* (prr-V4) reciprocal vector 2 */
         const real w_2_t = inv_v_2_t_2*s_2;
         const real w_2_t_2 = c_2*inv_v_2_t_2;
-        /* (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zy = h_2_x + J_2_zz*w_2_t_2;
-        /* (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+        /* (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = -c_2*d_f_1_xy - d_f_1_xx*s_2;
-        /* (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_t = J_2_zz*inv_v_2_t_2;
+        const real d_Gamma_2_x = -h_2_y - d_Gamma_2_t*s_2;
+        const real d_Gamma_2_y = h_2_x + c_2*d_Gamma_2_t;
+        /* (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = w_2_t*(-h_2_y - J_2_zz*w_2_t) - _r0_x*(d_f_1_xy*s_2 - c_2*d_f_1_xx) -
+        const real d_c_xx = d_Gamma_2_x*w_2_t - _r0_x*(-c_2*prr_link1_mass - d_Gamma_1_t*s_2) -
             h_2_y*w_2_t;
-        const real d_c_xy = d_mu_2_zy*w_2_t + h_2_y*w_2_t_2 - _r0_x*d_Gamma_1_r0_y;
-        /* (prr-N29) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2 + h_2_x*w_2_t_2;
+        const real d_c_xy = d_Gamma_2_y*w_2_t + h_2_y*w_2_t_2 - _r0_x*_r0_y_2;
+        /* (prr-N30) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx + _r0_y*_r0_y_2 + d_Gamma_2_y*w_2_t_2 + h_2_x*w_2_t_2;
         const real Q_t_2 = R(0.5)*Q_t;
         const real Q_t_3 = Q_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_xy;
         const real Q_t_4 = Q_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_xy;
@@ -622,26 +620,26 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real rel_o_x = u_1_tip_x + prr_platform_joint_offset_x*qd_2*qd_2;
         /* (prr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y);
-        /* (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_x = -g_r0_x - c_2*rel_o_x - qdd_2_o*v_2_t - s_2*u_1_tip_y;
-        /* (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real f_1_o_x = acc_1_o_x*prr_link1_mass;
-        /* (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_o_x = u_1_tip_x + c_2*g_r0_x - g_r0_y*s_2;
         const real acc_2_o_y = u_1_tip_y + c_2*g_r0_y + g_r0_x*s_2;
-        /* (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y;
-        /* (prr-N25) remainder without the acceleration in: force at the connection point that balances
+        /* (prr-N26) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_v_2_t_2*(mu_2_o_z + f_1_o_x*v_2_t);
-        /* (prr-N28) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prr-N29) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = G_o_t*s_2 + W_2_t*h_2_x + c_2*f_1_o_x - h_2_y*qdd_2_o;
         const real c_o_y = W_2_t*h_2_y + f_1_o_x*s_2 + h_2_x*qdd_2_o - G_o_t*c_2;
-        /* (prr-N30) velocity and gravity terms of the leg force */
+        /* (prr-N31) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_y_prr_axes2_in_base_x*c_o_y -
             axis_y_prr_axes2_in_base_y*c_o_x;
         const real U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x -
@@ -649,8 +647,10 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
         /* (prr-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = prr_base_frame_xx*w_1_r0_x + prr_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prr_base_frame_yx*w_1_r0_x + prr_base_frame_yy*w_1_r0_y;
+        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
         o->sum[0][k] = Q_t_5;  /* total_prr_xx */
@@ -776,7 +776,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- M: 199 mul, 133 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 190 mul, 127 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
         h_star_in_base_y[LANES], sum[6][LANES];
@@ -856,31 +856,31 @@ INLINE void M_legs_prr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2;
         const real axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2;
         /* (prr-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_2*prr_platform_joint_offset_x;
+        const real v_2_t = prr_platform_joint_offset_x*s_2;
+        const real v_2_t_2 = c_2*prr_platform_joint_offset_x;
         /* (prr-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t;
-        const real w_1_t = inv_v_2_t_2*prr_platform_joint_offset_x*s_2;
+        const real inv_v_2_t_2 = 1/v_2_t_2;
+        const real w_1_t = inv_v_2_t_2*v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
-        const real _r0_y = c_2*w_1_t - s_2;
-        /* (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight */
-        const real d_f_1_xx = prr_link1_mass*(-_r0_x*c_2 - _r0_y*s_2);
-        const real d_f_1_xy = prr_link1_mass*(_r0_x*s_2 - _r0_y*c_2);
+        /* (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t = inv_v_2_t_2*prr_link1_mass*v_2_t;
+        const real _r0_y = c_2*d_Gamma_1_t - prr_link1_mass*s_2;
         /* (prr-V4) reciprocal vector 2 */
         const real w_2_t = inv_v_2_t_2*s_2;
         const real w_2_t_2 = c_2*inv_v_2_t_2;
-        /* (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zy = h_2_x + J_2_zz*w_2_t_2;
-        /* (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+        /* (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = -c_2*d_f_1_xy - d_f_1_xx*s_2;
-        /* (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_t = J_2_zz*inv_v_2_t_2;
+        const real d_Gamma_2_x = -h_2_y - d_Gamma_2_t*s_2;
+        const real d_Gamma_2_y = h_2_x + c_2*d_Gamma_2_t;
+        /* (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = w_2_t*(-h_2_y - J_2_zz*w_2_t) - _r0_x*(d_f_1_xy*s_2 - c_2*d_f_1_xx) -
+        const real d_c_xx = d_Gamma_2_x*w_2_t - _r0_x*(-c_2*prr_link1_mass - d_Gamma_1_t*s_2) -
             h_2_y*w_2_t;
-        const real d_c_xy = d_mu_2_zy*w_2_t + h_2_y*w_2_t_2 - _r0_x*d_Gamma_1_r0_y;
-        /* (prr-N29) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2 + h_2_x*w_2_t_2;
+        const real d_c_xy = d_Gamma_2_y*w_2_t + h_2_y*w_2_t_2 - _r0_x*_r0_y;
+        /* (prr-N30) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_c_xx + _r0_y*(c_2*w_1_t - s_2) + d_Gamma_2_y*w_2_t_2 + h_2_x*w_2_t_2;
         const real Q_t_2 = R(0.5)*Q_t;
         const real Q_t_3 = Q_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_xy;
         const real Q_t_4 = Q_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_xy;
@@ -899,7 +899,7 @@ INLINE void M_legs_prr(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[4][k] = M_ta_t_2;  /* total_prr_yz */
         o->sum[5][k] = M_aa_t;  /* total_prr_zz */
         o->unreachable[k] = unless(disc_1 >= 0);
-        o->singular[k] = unless(magnitude(-v_2_t) > TOLERANCE*size_);
+        o->singular[k] = unless(magnitude(-v_2_t_2) > TOLERANCE*size_);
     }
 }
 
@@ -1113,26 +1113,26 @@ INLINE void Z_legs_prr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rel_o_x = u_1_tip_x + prr_platform_joint_offset_x*qd_2*qd_2;
         /* (prr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y);
-        /* (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_x = -g_r0_x - c_2*rel_o_x - qdd_2_o*v_2_t - s_2*u_1_tip_y;
-        /* (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real f_1_o_x = acc_1_o_x*prr_link1_mass;
-        /* (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_o_x = u_1_tip_x + c_2*g_r0_x - g_r0_y*s_2;
         const real acc_2_o_y = u_1_tip_y + c_2*g_r0_y + g_r0_x*s_2;
-        /* (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y;
-        /* (prr-N25) remainder without the acceleration in: force at the connection point that balances
+        /* (prr-N26) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_v_2_t_2*(mu_2_o_z + f_1_o_x*v_2_t);
-        /* (prr-N28) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prr-N29) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = G_o_t*s_2 + W_2_t*h_2_x + c_2*f_1_o_x - h_2_y*qdd_2_o;
         const real c_o_y = W_2_t*h_2_y + f_1_o_x*s_2 + h_2_x*qdd_2_o - G_o_t*c_2;
-        /* (prr-N30) velocity and gravity terms of the leg force */
+        /* (prr-N31) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_y_prr_axes2_in_base_x*c_o_y -
             axis_y_prr_axes2_in_base_y*c_o_x;
         const real U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x -
@@ -1279,16 +1279,19 @@ INLINE void H_legs_prr(const prepared *m, size_t leg, size_t legs, const H_value
         /* (prr-K8) sine of the angle of joint 2 from its reference direction */
         const real s_2 = inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy +
             S_y*prr_base_frame_yy);
+        /* (prr-V3) reciprocal vector 1 */
+        const real axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2;
+        const real axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2;
         /* (prr-V2) velocity of the connection point per rate of joint 2 */
         const real v_2_t = c_2*prr_platform_joint_offset_x;
         /* (prr-V3) reciprocal vector 1 */
         const real w_1_t = prr_platform_joint_offset_x*s_2/v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
-        const real w_1_in_base_x = prr_base_frame_xx*w_1_r0_x + prr_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prr_base_frame_yx*w_1_r0_x + prr_base_frame_yy*w_1_r0_y;
+        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
         o->entry[0][k] = w_1_in_base_x;
@@ -1483,6 +1486,13 @@ INLINE void required_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy);
         /* (prr-V8) centripetal tensor of link 2 */
         const real W_2_t = qd_2*qd_2;
+        /* (prr-V3) reciprocal vector 1 */
+        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
         /* (prr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x;
@@ -1497,19 +1507,19 @@ INLINE void required_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real rel_x = S_ddot_tip_x + prr_platform_joint_offset_x*qd_2*qd_2;
         /* (prr-A7) acceleration of joint 1 */
         const real qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2);
-        /* (prr-N7) acceleration of the reference point of link 2, less gravity */
+        /* (prr-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_x = S_ddot_tip_x + c_2*g_r0_x - g_r0_y*s_2;
         const real acc_2_y = S_ddot_tip_y + c_2*g_r0_y + g_r0_x*s_2;
         /* (prr-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_x = -g_r0_x - S_ddot_tip_y*s_2 - c_2*rel_x - qdd_2*v_2_t;
-        /* (prr-N4) inertia force of link 1 less its weight */
+        /* (prr-N3) inertia force of link 1 less its weight */
         const real f_1_x = acc_1_x*prr_link1_mass;
-        /* (prr-N14) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y;
-        /* (prr-N23) force at the connection point that balances the leg's inertia and weight along all
+        /* (prr-N24) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_v_2_t_2*(mu_2_z + f_1_x*v_2_t);
-        /* (prr-N26) leg force on the platform without actuation and without the mass at the connection
+        /* (prr-N27) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = G_t*s_2 + W_2_t*h_2_x + c_2*f_1_x - h_2_y*qdd_2;
         const real c_y = W_2_t*h_2_y + f_1_x*s_2 + h_2_x*qdd_2 - G_t*c_2;
@@ -1517,13 +1527,6 @@ INLINE void required_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real c_in_base_y = axis_y_prr_axes2_in_base_y*c_y - axis_y_prr_axes2_in_base_x*c_x;
         /* (E5) moment that actuators and external wrench must give */
         const real R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        /* (prr-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
-            _r0_y*axis_y_prr_axes2_in_base_x;
-        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
-            _r0_x*axis_y_prr_axes2_in_base_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
         o->sum[0][k] = c_in_base_x;  /* total_prr_x */
         o->sum[1][k] = c_in_base_y;  /* total_prr_y */
         o->sum[2][k] = R_a_t;  /* total_prr_z */
@@ -2132,6 +2135,11 @@ INLINE void legs_legs_prr(const prepared *m, size_t leg, size_t legs, const legs
         const real qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy);
         /* (prr-V8) centripetal tensor of link 2 */
         const real W_2_t = qd_2*qd_2;
+        /* (prr-V3) reciprocal vector 1 */
+        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
         /* (prr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x;
@@ -2146,34 +2154,29 @@ INLINE void legs_legs_prr(const prepared *m, size_t leg, size_t legs, const legs
         const real rel_x = S_ddot_tip_x + prr_platform_joint_offset_x*qd_2*qd_2;
         /* (prr-A7) acceleration of joint 1 */
         const real qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2);
-        /* (prr-N7) acceleration of the reference point of link 2, less gravity */
+        /* (prr-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_x = S_ddot_tip_x + c_2*g_r0_x - g_r0_y*s_2;
         const real acc_2_y = S_ddot_tip_y + c_2*g_r0_y + g_r0_x*s_2;
         /* (prr-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_x = -g_r0_x - S_ddot_tip_y*s_2 - c_2*rel_x - qdd_2*v_2_t;
-        /* (prr-N4) inertia force of link 1 less its weight */
+        /* (prr-N3) inertia force of link 1 less its weight */
         const real f_1_x = acc_1_x*prr_link1_mass;
-        /* (prr-N14) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y;
-        /* (prr-N23) force at the connection point that balances the leg's inertia and weight along all
+        /* (prr-N24) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_v_2_t_2*(mu_2_z + f_1_x*v_2_t);
-        /* (prr-N26) leg force on the platform without actuation and without the mass at the connection
+        /* (prr-N27) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = G_t*s_2 + W_2_t*h_2_x + c_2*f_1_x - h_2_y*qdd_2;
         const real c_y = W_2_t*h_2_y + f_1_x*s_2 + h_2_x*qdd_2 - G_t*c_2;
-        /* (prr-N31) leg force on the platform without actuation, the last link's mass included */
+        /* (prr-N32) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_2_x*prr_link2_mass;
         const real c_true_y = c_y - acc_2_y*prr_link2_mass;
         const real c_true_in_base_x = axis_y_prr_axes2_in_base_x*c_true_y +
             axis_y_prr_axes2_in_base_y*c_true_x;
         const real c_true_in_base_y = axis_y_prr_axes2_in_base_y*c_true_y -
             axis_y_prr_axes2_in_base_x*c_true_x;
-        /* (prr-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
-            _r0_y*axis_y_prr_axes2_in_base_x;
-        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
-            _r0_x*axis_y_prr_axes2_in_base_x;
         o->entry[0][k] = c_true_in_base_x;
         o->entry[1][k] = c_true_in_base_y;
         o->entry[2][k] = w_1_in_base_x;

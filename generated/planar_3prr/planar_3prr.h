@@ -104,7 +104,7 @@ extern const planar_3prr_real planar_3prr_HOME_Q[PLANAR_3PRR_NJ];
    model is all NaN. */
 int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *model);
 
-/* Inertia matrix M. 199 mul, 133 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 190 mul, 127 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_3prr_M(const planar_3prr_model *model, const planar_3prr_real *X, planar_3prr_real *M);
 size_t planar_3prr_M_batch(const planar_3prr_model *model, size_t n, const planar_3prr_real *X,
     planar_3prr_real *M, int *status);
@@ -122,7 +122,7 @@ int planar_3prr_H(const planar_3prr_model *model, const planar_3prr_real *X, pla
 size_t planar_3prr_H_batch(const planar_3prr_model *model, size_t n, const planar_3prr_real *X,
     planar_3prr_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 358 mul, 237 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 349 mul, 231 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_3prr_dynamics(const planar_3prr_model *model, const planar_3prr_real *X, const
     planar_3prr_real *V, planar_3prr_real *M, planar_3prr_real *Z, planar_3prr_real *H);
@@ -162,7 +162,7 @@ size_t planar_3prr_inverse_dynamics_batch(const planar_3prr_model *model, size_t
     planar_3prr_real *X, const planar_3prr_real *V, const planar_3prr_real *A, const
     planar_3prr_real *wrench, planar_3prr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 358 mul, 237 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 349 mul, 231 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_3prr_forward_dynamics(const planar_3prr_model *model, const planar_3prr_real *X, const

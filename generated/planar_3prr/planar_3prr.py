@@ -308,7 +308,7 @@ def _prepare(p):
     # (L3) inertia tensor about the platform origin
     J_star_t_5 = prr_link2_mass*size_t_2
     J_star_t_6 = prr_link2_mass*size_t_3
-    # (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
     g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
     # (prr-G2) first moment of link 1 about the origin of link 1
@@ -527,7 +527,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 358 mul, 237 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 349 mul, 231 add, 3 div, 3 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -600,23 +600,21 @@ def _dynamics_prr(c, k, x, s, f):
     w_1_t = inv_v_2_t_2*v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
-    # (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight
-    d_f_1_xx = prr_link1_mass*w_1_r0_x
-    d_f_1_xy = prr_link1_mass*w_1_r0_y
+    # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = inv_v_2_t_2*prr_link1_mass*v_2_t
+    _r0_y_2 = c_2*d_Gamma_1_t - prr_link1_mass*s_2
     # (prr-V4) reciprocal vector 2
     w_2_t = inv_v_2_t_2*s_2
     w_2_t_2 = c_2*inv_v_2_t_2
-    # (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_zy = h_2_x + J_2_zz*w_2_t_2
-    # (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = -c_2*d_f_1_xy - d_f_1_xx*s_2
-    # (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = w_2_t*(-h_2_y - J_2_zz*w_2_t) - _r0_x*(d_f_1_xy*s_2 - c_2*d_f_1_xx) - h_2_y*w_2_t
-    d_c_xy = d_mu_2_zy*w_2_t + h_2_y*w_2_t_2 - _r0_x*d_Gamma_1_r0_y
-    # (prr-N29) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2 + h_2_x*w_2_t_2
+    # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = J_2_zz*inv_v_2_t_2
+    d_Gamma_2_x = -h_2_y - d_Gamma_2_t*s_2
+    d_Gamma_2_y = h_2_x + c_2*d_Gamma_2_t
+    # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xx = d_Gamma_2_x*w_2_t - _r0_x*(-c_2*prr_link1_mass - d_Gamma_1_t*s_2) - h_2_y*w_2_t
+    d_c_xy = d_Gamma_2_y*w_2_t + h_2_y*w_2_t_2 - _r0_x*_r0_y_2
+    # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx + _r0_y*_r0_y_2 + d_Gamma_2_y*w_2_t_2 + h_2_x*w_2_t_2
     Q_t_2 = 0.5*Q_t
     Q_t_3 = Q_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_xy
     Q_t_4 = Q_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_xy
@@ -646,28 +644,28 @@ def _dynamics_prr(c, k, x, s, f):
     rel_o_x = u_1_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
     # (prr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
-    # (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_x = -g_r0_x - c_2*rel_o_x - qdd_2_o*v_2_t - s_2*u_1_tip_y
-    # (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight
+    # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
     f_1_o_x = acc_1_o_x*prr_link1_mass
-    # (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_o_x = u_1_tip_x + c_2*g_r0_x - g_r0_y*s_2
     acc_2_o_y = u_1_tip_y + c_2*g_r0_y + g_r0_x*s_2
-    # (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
-    # (prr-N25) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_v_2_t_2*(mu_2_o_z + f_1_o_x*v_2_t)
-    # (prr-N28) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = G_o_t*s_2 + W_2_t*h_2_x + c_2*f_1_o_x - h_2_y*qdd_2_o
     c_o_y = W_2_t*h_2_y + f_1_o_x*s_2 + h_2_x*qdd_2_o - G_o_t*c_2
-    # (prr-N30) velocity and gravity terms of the leg force
+    # (prr-N31) velocity and gravity terms of the leg force
     U_in_base_x = -axis_y_prr_axes2_in_base_x*c_o_y - axis_y_prr_axes2_in_base_y*c_o_x
     U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x - axis_y_prr_axes2_in_base_y*c_o_y
     # (M7) rotational part of Z
     Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (prr-V3) reciprocal vector 1
-    w_1_in_base_x = prr_base_frame_xx*w_1_r0_x + prr_base_frame_xy*w_1_r0_y
-    w_1_in_base_y = prr_base_frame_yx*w_1_r0_x + prr_base_frame_yy*w_1_r0_y
+    w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
     ok = (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size)
@@ -704,7 +702,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 199 mul, 133 add, 3 div, 3 sqrt, 0 trig
+# M: 190 mul, 127 add, 3 div, 3 sqrt, 0 trig
 def _M_before(c, X, f):
     sin = f.sin
     cos = f.cos
@@ -750,27 +748,27 @@ def _M_prr(c, k, x, s, f):
     axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
     axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
     # (prr-V2) velocity of the connection point per rate of joint 2
-    v_2_t = c_2*prr_platform_joint_offset_x
+    v_2_t = prr_platform_joint_offset_x*s_2
+    v_2_t_2 = c_2*prr_platform_joint_offset_x
     # (prr-V3) reciprocal vector 1
-    inv_v_2_t_2 = 1.0/v_2_t
-    w_1_t = inv_v_2_t_2*prr_platform_joint_offset_x*s_2
+    inv_v_2_t_2 = 1.0/v_2_t_2
+    w_1_t = inv_v_2_t_2*v_2_t
     _r0_x = -c_2 - s_2*w_1_t
-    _r0_y = c_2*w_1_t - s_2
-    # (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight
-    d_f_1_xx = prr_link1_mass*(-_r0_x*c_2 - _r0_y*s_2)
-    d_f_1_xy = prr_link1_mass*(_r0_x*s_2 - _r0_y*c_2)
+    # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+    d_Gamma_1_t = inv_v_2_t_2*prr_link1_mass*v_2_t
+    _r0_y = c_2*d_Gamma_1_t - prr_link1_mass*s_2
     # (prr-V4) reciprocal vector 2
     w_2_t = inv_v_2_t_2*s_2
     w_2_t_2 = c_2*inv_v_2_t_2
-    # (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_zy = h_2_x + J_2_zz*w_2_t_2
-    # (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = -c_2*d_f_1_xy - d_f_1_xx*s_2
-    # (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_xx = w_2_t*(-h_2_y - J_2_zz*w_2_t) - _r0_x*(d_f_1_xy*s_2 - c_2*d_f_1_xx) - h_2_y*w_2_t
-    d_c_xy = d_mu_2_zy*w_2_t + h_2_y*w_2_t_2 - _r0_x*d_Gamma_1_r0_y
-    # (prr-N29) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2 + h_2_x*w_2_t_2
+    # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = J_2_zz*inv_v_2_t_2
+    d_Gamma_2_x = -h_2_y - d_Gamma_2_t*s_2
+    d_Gamma_2_y = h_2_x + c_2*d_Gamma_2_t
+    # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_xx = d_Gamma_2_x*w_2_t - _r0_x*(-c_2*prr_link1_mass - d_Gamma_1_t*s_2) - h_2_y*w_2_t
+    d_c_xy = d_Gamma_2_y*w_2_t + h_2_y*w_2_t_2 - _r0_x*_r0_y
+    # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
+    Q_t = d_c_xx + _r0_y*(c_2*w_1_t - s_2) + d_Gamma_2_y*w_2_t_2 + h_2_x*w_2_t_2
     Q_t_2 = 0.5*Q_t
     Q_t_3 = Q_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_xy
     Q_t_4 = Q_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_xy
@@ -782,7 +780,7 @@ def _M_prr(c, k, x, s, f):
     M_ta_t_2 = Q_t_6*q_in_base_y - Q_t_7*q_in_base_x
     # (M3) rotational block of M
     M_aa_t = M_ta_t*q_in_base_y - M_ta_t_2*q_in_base_x
-    ok = (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size)
+    ok = (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (ok, (Q_t_5, Q_t_6, Q_t_7, M_ta_t, M_ta_t_2, M_aa_t,), (),)
 
 
@@ -887,21 +885,21 @@ def _Z_prr(c, k, x, s, f):
     rel_o_x = u_1_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
     # (prr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
-    # (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_x = -g_r0_x - c_2*rel_o_x - qdd_2_o*v_2_t - s_2*u_1_tip_y
-    # (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight
+    # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
     f_1_o_x = acc_1_o_x*prr_link1_mass
-    # (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_o_x = u_1_tip_x + c_2*g_r0_x - g_r0_y*s_2
     acc_2_o_y = u_1_tip_y + c_2*g_r0_y + g_r0_x*s_2
-    # (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
-    # (prr-N25) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_v_2_t_2*(mu_2_o_z + f_1_o_x*v_2_t)
-    # (prr-N28) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_o_x = G_o_t*s_2 + W_2_t*h_2_x + c_2*f_1_o_x - h_2_y*qdd_2_o
     c_o_y = W_2_t*h_2_y + f_1_o_x*s_2 + h_2_x*qdd_2_o - G_o_t*c_2
-    # (prr-N30) velocity and gravity terms of the leg force
+    # (prr-N31) velocity and gravity terms of the leg force
     U_in_base_x = -axis_y_prr_axes2_in_base_x*c_o_y - axis_y_prr_axes2_in_base_y*c_o_x
     U_in_base_y = axis_y_prr_axes2_in_base_x*c_o_x - axis_y_prr_axes2_in_base_y*c_o_y
     # (M7) rotational part of Z
@@ -960,16 +958,17 @@ def _H_prr(c, k, x, s, f):
     c_2 = branch_1*sqrt(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x
     # (prr-K8) sine of the angle of joint 2 from its reference direction
     s_2 = inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy + S_y*prr_base_frame_yy)
+    # (prr-V3) reciprocal vector 1
+    axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2
+    axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2
     # (prr-V2) velocity of the connection point per rate of joint 2
     v_2_t = c_2*prr_platform_joint_offset_x
     # (prr-V3) reciprocal vector 1
     w_1_t = prr_platform_joint_offset_x*s_2/v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
-    w_1_in_base_x = prr_base_frame_xx*w_1_r0_x + prr_base_frame_xy*w_1_r0_y
-    w_1_in_base_y = prr_base_frame_yx*w_1_r0_x + prr_base_frame_yy*w_1_r0_y
+    w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
     ok = (disc_1 >= 0.0) & (abs(-v_2_t) > _TOLERANCE * size)
@@ -1068,6 +1067,11 @@ def _required_prr(c, k, x, s, f):
     qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
     # (prr-V8) centripetal tensor of link 2
     W_2_t = qd_2*qd_2
+    # (prr-V3) reciprocal vector 1
+    w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
+    # (M8) moment of the column's unit force about the platform origin
+    H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
     # (prr-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x
@@ -1080,29 +1084,24 @@ def _required_prr(c, k, x, s, f):
     rel_x = S_ddot_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
     # (prr-A7) acceleration of joint 1
     qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
-    # (prr-N7) acceleration of the reference point of link 2, less gravity
+    # (prr-N5) acceleration of the reference point of link 2, less gravity
     acc_2_x = S_ddot_tip_x + c_2*g_r0_x - g_r0_y*s_2
     acc_2_y = S_ddot_tip_y + c_2*g_r0_y + g_r0_x*s_2
     # (prr-N1) acceleration of the reference point of link 1, less gravity
     acc_1_x = -g_r0_x - S_ddot_tip_y*s_2 - c_2*rel_x - qdd_2*v_2_t
-    # (prr-N4) inertia force of link 1 less its weight
+    # (prr-N3) inertia force of link 1 less its weight
     f_1_x = acc_1_x*prr_link1_mass
-    # (prr-N14) inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
-    # (prr-N23) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_v_2_t_2*(mu_2_z + f_1_x*v_2_t)
-    # (prr-N26) leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
     c_x = G_t*s_2 + W_2_t*h_2_x + c_2*f_1_x - h_2_y*qdd_2
     c_y = W_2_t*h_2_y + f_1_x*s_2 + h_2_x*qdd_2 - G_t*c_2
     c_in_base_x = axis_y_prr_axes2_in_base_x*c_y + axis_y_prr_axes2_in_base_y*c_x
     c_in_base_y = axis_y_prr_axes2_in_base_y*c_y - axis_y_prr_axes2_in_base_x*c_x
     # (E5) moment that actuators and external wrench must give
     R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-    # (prr-V3) reciprocal vector 1
-    w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-    w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
     ok = (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (ok, (c_in_base_x, c_in_base_y, R_a_t,), (w_1_in_base_x, w_1_in_base_y, H_a_1_z,),)
 
@@ -1385,6 +1384,9 @@ def _legs_prr(c, k, x, s, f):
     qd_2 = inv_v_2_t_2*(S_dot_x*prr_base_frame_xy + S_dot_y*prr_base_frame_yy)
     # (prr-V8) centripetal tensor of link 2
     W_2_t = qd_2*qd_2
+    # (prr-V3) reciprocal vector 1
+    w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     # (prr-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x
@@ -1397,28 +1399,25 @@ def _legs_prr(c, k, x, s, f):
     rel_x = S_ddot_tip_x + prr_platform_joint_offset_x*qd_2*qd_2
     # (prr-A7) acceleration of joint 1
     qdd_2 = inv_v_2_t_2*(rel_x*s_2 - S_ddot_tip_y*c_2)
-    # (prr-N7) acceleration of the reference point of link 2, less gravity
+    # (prr-N5) acceleration of the reference point of link 2, less gravity
     acc_2_x = S_ddot_tip_x + c_2*g_r0_x - g_r0_y*s_2
     acc_2_y = S_ddot_tip_y + c_2*g_r0_y + g_r0_x*s_2
     # (prr-N1) acceleration of the reference point of link 1, less gravity
     acc_1_x = -g_r0_x - S_ddot_tip_y*s_2 - c_2*rel_x - qdd_2*v_2_t
-    # (prr-N4) inertia force of link 1 less its weight
+    # (prr-N3) inertia force of link 1 less its weight
     f_1_x = acc_1_x*prr_link1_mass
-    # (prr-N14) inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
-    # (prr-N23) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_v_2_t_2*(mu_2_z + f_1_x*v_2_t)
-    # (prr-N26) leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
     c_x = G_t*s_2 + W_2_t*h_2_x + c_2*f_1_x - h_2_y*qdd_2
     c_y = W_2_t*h_2_y + f_1_x*s_2 + h_2_x*qdd_2 - G_t*c_2
-    # (prr-N31) leg force on the platform without actuation, the last link's mass included
+    # (prr-N32) leg force on the platform without actuation, the last link's mass included
     c_true_x = c_x - acc_2_x*prr_link2_mass
     c_true_y = c_y - acc_2_y*prr_link2_mass
     c_true_in_base_x = axis_y_prr_axes2_in_base_x*c_true_y + axis_y_prr_axes2_in_base_y*c_true_x
     c_true_in_base_y = axis_y_prr_axes2_in_base_y*c_true_y - axis_y_prr_axes2_in_base_x*c_true_x
-    # (prr-V3) reciprocal vector 1
-    w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-    w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     ok = (disc_1 >= 0.0) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (ok, (), (c_true_in_base_x, c_true_in_base_y, w_1_in_base_x, w_1_in_base_y,),)
 

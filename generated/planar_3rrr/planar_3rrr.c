@@ -398,11 +398,24 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
         const real J_2_t = rho_tip_2_x*rho_tip_2_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_zz = J_1_zz + J_2_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_x = rho_tip_2_x*rrr_link2_mass;
         const real h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t = J_2_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_y = d_Gamma_1_t + h_2_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_t = h_2_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -d_Gamma_1_y*inv_rrr_platform_joint_offset_x -
+            h_2_x*inv_rrr_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
@@ -423,11 +436,16 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_zz[leg] = J_1_zz;
         model->J_2_zz[leg] = J_2_zz;
+        model->Jc_1_zz[leg] = Jc_1_zz;
         model->Kd_1_t_2[leg] = Kd_1_t_2;
         model->Kd_1_t_3[leg] = Kd_1_t_3;
         model->b_r0_x[leg] = b_r0_x;
         model->b_r0_y[leg] = b_r0_y;
         model->branch_1[leg] = branch_1;
+        model->d_Gamma_1_t[leg] = d_Gamma_1_t;
+        model->d_Gamma_1_y[leg] = d_Gamma_1_y;
+        model->d_c_yy[leg] = d_c_yy;
+        model->d_phi_2_t[leg] = d_phi_2_t;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->h_1_x[leg] = h_1_x;
@@ -482,7 +500,7 @@ int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 457 mul, 288 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 397 mul, 264 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
@@ -558,9 +576,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_z = s->omega_z[j];
         const real J_1_zz = m->J_1_zz[i];
         const real J_2_zz = m->J_2_zz[i];
+        const real Jc_1_zz = m->Jc_1_zz[i];
         const real Kd_1_t_2 = m->Kd_1_t_2[i];
         const real Kd_1_t_3 = m->Kd_1_t_3[i];
         const real branch_1 = m->branch_1[i];
+        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
+        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
+        const real d_c_yy = m->d_c_yy[i];
+        const real d_phi_2_t = m->d_phi_2_t[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real h_1_x = m->h_1_x[i];
@@ -630,40 +653,32 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = c_2*inv_r_1_r0_y;
-        const real w_1_t_2 = inv_r_1_r0_y*s_2;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_zx = w_2_t - c_2*w_1_t - s_2*w_1_t_2;
-        const real d_alpha_2_zy = inv_rrr_platform_joint_offset_x + c_2*w_1_t_2 - s_2*w_1_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zx = J_2_zz*d_alpha_2_zx - h_2_y;
-        const real d_mu_2_zy = h_2_x + J_2_zz*d_alpha_2_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_zx = c_2*d_mu_2_zx + d_mu_2_zy*s_2 - J_1_zz*w_1_t;
-        const real d_N_1_zy = J_1_zz*w_1_t_2 + c_2*d_mu_2_zy - d_mu_2_zx*s_2;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
+        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_2_zx*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zx - d_N_1_zy*s_2) -
-            d_mu_2_zx*w_2_t;
-        const real d_c_xy = d_alpha_2_zy*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zy + d_N_1_zx*s_2) -
-            d_mu_2_zy*w_2_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_alpha_2_zy*h_2_x + d_mu_2_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
+            d_Gamma_2_x*w_2_t;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_5 = 2*Q_t_3*axis_y_rrr_axes2_in_base_x - d_c_xx;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_y + Q_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_t_7 = 2*Q_t_4*axis_y_rrr_axes2_in_base_y - d_c_xx;
+        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
+        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
+        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_5*q_in_base_y - Q_t_6*q_in_base_x;
-        const real M_ta_t_2 = Q_t_6*q_in_base_y - Q_t_7*q_in_base_x;
+        const real M_ta_t = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x;
+        const real M_ta_t_2 = Q_t_6*q_in_base_y + Q_t_7*q_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_in_base_y - M_ta_t_2*q_in_base_x;
+        const real M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
@@ -679,11 +694,12 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
             + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_t = S_dot_t_2*omega_z;
         const real u_1_t_2 = S_dot_t*omega_z;
@@ -694,34 +710,34 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+        const real rel_o_y = u_1_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_r_1_r0_y*rel_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_o_x = u_1_tip_x + g_r1_y*s_2 - c_2*g_r1_x;
         const real acc_2_o_y = u_1_tip_y - c_2*g_r1_y - g_r1_x*s_2;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rel_o_y + qdd_1_o*r_1_r0_x) -
             qdd_1_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = J_2_zz*alpha_2_o_z + acc_2_o_y*h_2_x - acc_2_o_x*h_2_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
             N_1_o_z);
         const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
             axis_y_rrr_axes2_in_base_y*c_o_x;
         const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
@@ -729,10 +745,10 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
-        const real w_1_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
+        const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
+        const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_z = q_in_base_x*w_1_t_4 + q_in_base_y*w_1_t_3;
+        const real H_a_1_z = q_in_base_x*w_1_t_2 + q_in_base_y*w_1_t;
         o->sum[0][k] = Q_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_t_7;  /* total_rrr_yy */
@@ -742,8 +758,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         o->sum[6][k] = U_in_base_x;  /* total_rrr_x */
         o->sum[7][k] = U_in_base_y;  /* total_rrr_y */
         o->sum[8][k] = Z_a_t;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_t_3;
-        o->entry[1][k] = w_1_t_4;
+        o->entry[0][k] = -w_1_t;
+        o->entry[1][k] = w_1_t_2;
         o->entry[2][k] = H_a_1_z;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
             unless(magnitude(-r_1_r0_y) > TOLERANCE*size_);
@@ -784,13 +800,13 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real J_star_t_8 = m->J_star_t_8;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr_xx;
-        const real M_tt_yy = m_star + total_rrr_yy;
+        const real M_tt_xx = m_star - total_rrr_xx;
+        const real M_tt_yy = m_star - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = -h_star_in_base_y - total_rrr_xz;
+        const real M_ta_xz = total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_rrr_zz - J_star_t_8;
+        const real M_aa_zz = -J_star_t_8 - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_rrr_y;
@@ -857,7 +873,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- M: 274 mul, 172 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 220 mul, 148 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
         h_star_in_base_y[LANES], sum[6][LANES];
@@ -901,12 +917,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_1_zz = m->J_1_zz[i];
         const real J_2_zz = m->J_2_zz[i];
+        const real Jc_1_zz = m->Jc_1_zz[i];
         const real Kd_1_t_2 = m->Kd_1_t_2[i];
         const real Kd_1_t_3 = m->Kd_1_t_3[i];
         const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
+        const real d_Gamma_1_t = m->d_Gamma_1_t[i];
+        const real d_Gamma_1_y = m->d_Gamma_1_y[i];
+        const real d_c_yy = m->d_c_yy[i];
+        const real d_phi_2_t = m->d_phi_2_t[i];
         const real h_2_y = m->h_2_y[i];
         const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -956,6 +975,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_t = rrr_platform_joint_offset_x*s_2;
         const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
+        const real r_1_r0_x = c_2*r_1_x + r_1_t*s_2;
         const real r_1_r0_y = r_1_x*s_2 - c_2*r_1_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1 = 1/rho2_1;
@@ -970,40 +990,32 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_r0_y = 1/r_1_r0_y;
-        const real w_1_t = c_2*inv_r_1_r0_y;
-        const real w_1_t_2 = inv_r_1_r0_y*s_2;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*(c_2*r_1_x + r_1_t*s_2);
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_zx = w_2_t - c_2*w_1_t - s_2*w_1_t_2;
-        const real d_alpha_2_zy = inv_rrr_platform_joint_offset_x + c_2*w_1_t_2 - s_2*w_1_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zx = J_2_zz*d_alpha_2_zx - h_2_y;
-        const real d_mu_2_zy = h_2_x + J_2_zz*d_alpha_2_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_zx = c_2*d_mu_2_zx + d_mu_2_zy*s_2 - J_1_zz*w_1_t;
-        const real d_N_1_zy = J_1_zz*w_1_t_2 + c_2*d_mu_2_zy - d_mu_2_zx*s_2;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_t = inv_r_1_r0_y*inv_rrr_platform_joint_offset_x*r_1_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_t_2 = d_Gamma_1_t*r_1_r0_x;
+        const real d_Gamma_1_x = -h_2_y - inv_r_1_r0_y*(Jc_1_zz - d_Gamma_1_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_x = -h_2_y - inv_r_1_r0_y*(J_2_zz - d_Gamma_1_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = d_alpha_2_zx*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zx - d_N_1_zy*s_2) -
-            d_mu_2_zx*w_2_t;
-        const real d_c_xy = d_alpha_2_zy*h_2_y + inv_r_1_r0_y*(c_2*d_N_1_zy + d_N_1_zx*s_2) -
-            d_mu_2_zy*w_2_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + d_alpha_2_zy*h_2_x + d_mu_2_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_xy = d_phi_2_t + d_Gamma_1_y*inv_r_1_r0_y - d_Gamma_1_y*w_2_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = d_Gamma_1_x*inv_r_1_r0_y + h_2_y*(w_2_t - inv_r_1_r0_y) - d_c_yy -
+            d_Gamma_2_x*w_2_t;
         const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
-        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
-        const real Q_t_5 = 2*Q_t_3*axis_y_rrr_axes2_in_base_x - d_c_xx;
-        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_y + Q_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_t_7 = 2*Q_t_4*axis_y_rrr_axes2_in_base_y - d_c_xx;
+        const real Q_t_3 = Q_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_xy;
+        const real Q_t_4 = Q_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_xy;
+        const real Q_t_5 = d_c_yy + 2*Q_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_6 = Q_t_3*axis_y_rrr_axes2_in_base_x + Q_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_t_7 = d_c_yy + 2*Q_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_5*q_in_base_y - Q_t_6*q_in_base_x;
-        const real M_ta_t_2 = Q_t_6*q_in_base_y - Q_t_7*q_in_base_x;
+        const real M_ta_t = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x;
+        const real M_ta_t_2 = Q_t_6*q_in_base_y + Q_t_7*q_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_in_base_y - M_ta_t_2*q_in_base_x;
+        const real M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x;
         o->sum[0][k] = Q_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_t_7;  /* total_rrr_yy */
@@ -1038,13 +1050,13 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real J_star_t_8 = m->J_star_t_8;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr_xx;
-        const real M_tt_yy = m_star + total_rrr_yy;
+        const real M_tt_xx = m_star - total_rrr_xx;
+        const real M_tt_yy = m_star - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = -h_star_in_base_y - total_rrr_xz;
+        const real M_ta_xz = total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_rrr_zz - J_star_t_8;
+        const real M_aa_zz = -J_star_t_8 - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = total_rrr_xy;
         M[3*w + k] = total_rrr_xy;
@@ -1096,7 +1108,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 9, w, code, M);
 }
 
-/* ---- Z: 310 mul, 184 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 304 mul, 184 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[3][LANES];
@@ -1252,11 +1264,12 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
             + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_t = S_dot_t_2*omega_z;
         const real u_1_t_2 = S_dot_t*omega_z;
@@ -1267,34 +1280,34 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_o_x = u_1_tip_x - bias_x;
-        const real rel_o_y = u_1_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+        const real rel_o_y = u_1_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o = inv_r_1_r0_y*rel_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_o_z = g_r1_x*h_1_y - J_1_zz*qdd_1_o - g_r1_y*h_1_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_o_x = u_1_tip_x + g_r1_y*s_2 - c_2*g_r1_x;
         const real acc_2_o_y = u_1_tip_y - c_2*g_r1_y - g_r1_x*s_2;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_z = inv_rrr_platform_joint_offset_x*(rel_o_y + qdd_1_o*r_1_r0_x) -
             qdd_1_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = J_2_zz*alpha_2_o_z + acc_2_o_y*h_2_x - acc_2_o_x*h_2_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_o_z = mu_1_o_z + mu_2_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_rrr_platform_joint_offset_x*mu_2_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_o_x = W_2_t*h_2_x + alpha_2_o_z*h_2_y - inv_r_1_r0_y*(G_o_t*r_1_r0_x -
             N_1_o_z);
         const real c_o_y = W_2_t*h_2_y - G_o_t - alpha_2_o_z*h_2_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_in_base_x = -axis_y_rrr_axes2_in_base_x*c_o_y -
             axis_y_rrr_axes2_in_base_y*c_o_x;
         const real U_in_base_y = axis_y_rrr_axes2_in_base_x*c_o_x -
@@ -1530,7 +1543,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- required: 333 mul, 204 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 327 mul, 204 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
@@ -1705,11 +1718,12 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
             + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
         const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
@@ -1727,7 +1741,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             S_ddot_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1 = inv_r_1_r0_y*rel_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -1735,20 +1749,20 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
             g_r0_x*s_1);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
         const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
@@ -2137,7 +2151,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 6, w, code, rates);
 }
 
-/* ---- joint_accelerations: 219 mul, 117 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 216 mul, 117 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -2279,9 +2293,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
             + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+            W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x;
@@ -2292,7 +2308,7 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real rel_x = S_ddot_x*axis_y_rrr_axes2_in_base_y - bias_x -
             S_ddot_y*axis_y_rrr_axes2_in_base_x;
         const real rel_y = S_ddot_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_y*axis_y_rrr_axes2_in_base_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+            S_ddot_y*axis_y_rrr_axes2_in_base_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1 = inv_r_1_r0_y*rel_x;
         const real qdd_2 = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x);
@@ -2349,7 +2365,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 6, w, code, accelerations);
 }
 
-/* ---- legs: 309 mul, 180 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 303 mul, 180 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -2500,11 +2516,12 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         /* (rrr-V11) angular velocity of link 2 */
         const real omega_2_z = inv_rrr_platform_joint_offset_x*(S_dot_x*axis_y_rrr_axes2_in_base_x
             + S_dot_y*axis_y_rrr_axes2_in_base_y + qd_1*r_1_r0_x) - qd_1;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_t = omega_2_z*omega_2_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_x = -omega_2_z*omega_2_z*rrr_platform_joint_offset_x -
-            c_2*qd_1*qd_1*rrr_joint2_offset_x;
+        const real bias_x = -W_2_t*rrr_platform_joint_offset_x - W_1_t*c_2*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_t = axis_y_rrr_axes2_in_base_y*inv_r_1_r0_y;
         const real w_1_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_r0_y;
@@ -2520,7 +2537,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             S_ddot_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_tip_x - bias_x;
-        const real rel_y = S_ddot_tip_y + qd_1*qd_1*rrr_joint2_offset_x*s_2;
+        const real rel_y = S_ddot_tip_y + W_1_t*rrr_joint2_offset_x*s_2;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1 = inv_r_1_r0_y*rel_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -2528,24 +2545,24 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_y = S_ddot_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_z = h_1_y*(c_1*g_r0_x + g_r0_y*s_1) - J_1_zz*qdd_1 - h_1_x*(c_1*g_r0_y -
             g_r0_x*s_1);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_z = inv_rrr_platform_joint_offset_x*(rel_y + qdd_1*r_1_r0_x) - qdd_1;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = J_2_zz*alpha_2_z + acc_2_y*h_2_x - acc_2_x*h_2_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_z = mu_1_z + mu_2_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_t = inv_rrr_platform_joint_offset_x*mu_2_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_x = W_2_t*h_2_x + alpha_2_z*h_2_y - inv_r_1_r0_y*(G_t*r_1_r0_x - N_1_z);
         const real c_y = W_2_t*h_2_y - G_t - alpha_2_z*h_2_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_x = c_x - acc_2_x*rrr_link2_mass;
         const real c_true_y = c_y - acc_2_y*rrr_link2_mass;
         const real c_true_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_y +

@@ -90,13 +90,14 @@ typedef struct {
     planar_3rrr_real J_star_t_8, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,
             m_star;
     /* legs of type rrr */
-    planar_3rrr_real J_1_zz[3], J_2_zz[3], Kd_1_t_2[3], Kd_1_t_3[3], b_r0_x[3], b_r0_y[3],
-            branch_1[3], g_r0_x[3], g_r0_y[3], h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3],
-            inv_Kd_1_t_5[3], inv_rrr_platform_joint_offset_x[3], inv_uu_2_t[3], rho2_1_t[3],
-            rrr_base_frame_xx[3], rrr_base_frame_xy[3], rrr_base_frame_yx[3], rrr_base_frame_yy[3],
-            rrr_base_point_x[3], rrr_base_point_y[3], rrr_joint2_offset_x[3], rrr_link1_mass[3],
-            rrr_link2_mass[3], rrr_platform_joint_offset_x[3], rrr_platform_point_x[3],
-            rrr_platform_point_y[3], size_[3];
+    planar_3rrr_real J_1_zz[3], J_2_zz[3], Jc_1_zz[3], Kd_1_t_2[3], Kd_1_t_3[3], b_r0_x[3], b_r0_y[3],
+            branch_1[3], d_Gamma_1_t[3], d_Gamma_1_y[3], d_c_yy[3], d_phi_2_t[3], g_r0_x[3],
+            g_r0_y[3], h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], inv_Kd_1_t_5[3],
+            inv_rrr_platform_joint_offset_x[3], inv_uu_2_t[3], rho2_1_t[3], rrr_base_frame_xx[3],
+            rrr_base_frame_xy[3], rrr_base_frame_yx[3], rrr_base_frame_yy[3], rrr_base_point_x[3],
+            rrr_base_point_y[3], rrr_joint2_offset_x[3], rrr_link1_mass[3], rrr_link2_mass[3],
+            rrr_platform_joint_offset_x[3], rrr_platform_point_x[3], rrr_platform_point_y[3],
+            size_[3];
 } planar_3rrr_model;
 
 extern const planar_3rrr_params planar_3rrr_default_params;
@@ -108,12 +109,12 @@ extern const planar_3rrr_real planar_3rrr_HOME_Q[PLANAR_3RRR_NJ];
    model is all NaN. */
 int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *model);
 
-/* Inertia matrix M. 274 mul, 172 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 220 mul, 148 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_3rrr_M(const planar_3rrr_model *model, const planar_3rrr_real *X, planar_3rrr_real *M);
 size_t planar_3rrr_M_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real *X,
     planar_3rrr_real *M, int *status);
 
-/* Velocity and gravity terms Z. 310 mul, 184 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 304 mul, 184 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_3rrr_Z(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *Z);
@@ -126,7 +127,7 @@ int planar_3rrr_H(const planar_3rrr_model *model, const planar_3rrr_real *X, pla
 size_t planar_3rrr_H_batch(const planar_3rrr_model *model, size_t n, const planar_3rrr_real *X,
     planar_3rrr_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 457 mul, 288 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 397 mul, 264 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_3rrr_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
     planar_3rrr_real *V, planar_3rrr_real *M, planar_3rrr_real *Z, planar_3rrr_real *H);
@@ -148,7 +149,7 @@ int planar_3rrr_joint_rates(const planar_3rrr_model *model, const planar_3rrr_re
 size_t planar_3rrr_joint_rates_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *X, const planar_3rrr_real *V, planar_3rrr_real *rates, int *status);
 
-/* Accelerations of all joints. 219 mul, 117 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 216 mul, 117 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_3rrr_joint_accelerations(const planar_3rrr_model *model, const planar_3rrr_real *X,
     const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real *accelerations);
@@ -156,7 +157,7 @@ size_t planar_3rrr_joint_accelerations_batch(const planar_3rrr_model *model, siz
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real
     *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 333 mul, 204 add, 6 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 327 mul, 204 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_3rrr_inverse_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
@@ -166,7 +167,7 @@ size_t planar_3rrr_inverse_dynamics_batch(const planar_3rrr_model *model, size_t
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, const
     planar_3rrr_real *wrench, planar_3rrr_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 457 mul, 288 add, 6 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 397 mul, 264 add, 6 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_3rrr_forward_dynamics(const planar_3rrr_model *model, const planar_3rrr_real *X, const
@@ -184,7 +185,7 @@ size_t planar_3rrr_complete_acceleration_batch(const planar_3rrr_model *model, s
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real
     *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 309 mul, 180 add, 6 div, 3
+/* Force of each leg on the platform at its platform joint, base axes. 303 mul, 180 add, 6 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (3 x 3). */
 int planar_3rrr_leg_reactions(const planar_3rrr_model *model, const planar_3rrr_real *X, const

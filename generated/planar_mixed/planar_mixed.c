@@ -567,11 +567,24 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
+            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_5 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_6 = rrr_link2_mass*rrr_platform_point_y;
@@ -592,11 +605,16 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
+        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
         model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
         model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
         model->b_rrr_r0_x[leg] = b_rrr_r0_x;
         model->b_rrr_r0_y[leg] = b_rrr_r0_y;
         model->branch_1_rrr[leg] = branch_1_rrr;
+        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
+        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
+        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
+        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
         model->g_r0_x_2[leg] = g_r0_x_2;
         model->g_r0_y_2[leg] = g_r0_y_2;
         model->h_1_rrr_x[leg] = h_1_rrr_x;
@@ -670,7 +688,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         /* (L3) inertia tensor about the platform origin */
         const real J_star_t_9 = prr_link2_mass*size_prr_t_2;
         const real J_star_t_10 = prr_link2_mass*size_prr_t_3;
-        /* (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
         const real g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
@@ -738,7 +756,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 349 mul, 246 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 326 mul, 236 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], W_p_t[LANES], Z_p_x[LANES],
@@ -960,9 +978,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_z = s->omega_z[j];
         const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real g_r0_x_2 = m->g_r0_x_2[i];
         const real g_r0_y_2 = m->g_r0_y_2[i];
         const real h_1_rrr_x = m->h_1_rrr_x[i];
@@ -1033,49 +1056,38 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x;
+        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr;
@@ -1092,11 +1104,13 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -1107,35 +1121,35 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -1143,10 +1157,10 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3;
+        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -1156,8 +1170,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         o->sum[6][k] = U_rrr_in_base_x;  /* total_rrr_x */
         o->sum[7][k] = U_rrr_in_base_y;  /* total_rrr_y */
         o->sum[8][k] = Z_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t_3;
-        o->entry[1][k] = w_1_rrr_t_4;
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
         o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
             unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
@@ -1238,28 +1252,25 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t;
         const real _r0_x = -c_2_prr - s_2_prr*w_1_prr_t;
         const real _r0_y = c_2_prr*w_1_prr_t - s_2_prr;
-        const real w_1_prr_r0_x = -_r0_x*c_2_prr - _r0_y*s_2_prr;
-        const real w_1_prr_r0_y = _r0_x*s_2_prr - _r0_y*c_2_prr;
-        /* (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight */
-        const real d_f_1_prr_xx = prr_link1_mass*w_1_prr_r0_x;
-        const real d_f_1_prr_xy = prr_link1_mass*w_1_prr_r0_y;
+        /* (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_prr_t = inv_v_2_prr_t_2*prr_link1_mass*v_2_prr_t;
+        const real _r0_y_2 = c_2_prr*d_Gamma_1_prr_t - prr_link1_mass*s_2_prr;
         /* (prr-V4) reciprocal vector 2 */
         const real w_2_prr_t = inv_v_2_prr_t_2*s_2_prr;
         const real w_2_prr_t_2 = c_2_prr*inv_v_2_prr_t_2;
-        /* (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_prr_zy = h_2_prr_x + J_2_prr_zz*w_2_prr_t_2;
-        /* (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+        /* (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_prr_r0_y = -c_2_prr*d_f_1_prr_xy - d_f_1_prr_xx*s_2_prr;
-        /* (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_prr_t = J_2_prr_zz*inv_v_2_prr_t_2;
+        const real d_Gamma_2_prr_x = -h_2_prr_y - d_Gamma_2_prr_t*s_2_prr;
+        const real d_Gamma_2_prr_y = h_2_prr_x + c_2_prr*d_Gamma_2_prr_t;
+        /* (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prr_xx = w_2_prr_t*(-h_2_prr_y - J_2_prr_zz*w_2_prr_t) -
-            _r0_x*(d_f_1_prr_xy*s_2_prr - c_2_prr*d_f_1_prr_xx) - h_2_prr_y*w_2_prr_t;
-        const real d_c_prr_xy = d_mu_2_prr_zy*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 -
-            _r0_x*d_Gamma_1_prr_r0_y;
-        /* (prr-N29) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_prr_t = d_c_prr_xx + _r0_y*d_Gamma_1_prr_r0_y + d_mu_2_prr_zy*w_2_prr_t_2 +
+        const real d_c_prr_xx = d_Gamma_2_prr_x*w_2_prr_t - _r0_x*(-c_2_prr*prr_link1_mass -
+            d_Gamma_1_prr_t*s_2_prr) - h_2_prr_y*w_2_prr_t;
+        const real d_c_prr_xy = d_Gamma_2_prr_y*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*_r0_y_2;
+        /* (prr-N30) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_prr_t = d_c_prr_xx + _r0_y*_r0_y_2 + d_Gamma_2_prr_y*w_2_prr_t_2 +
             h_2_prr_x*w_2_prr_t_2;
         const real Q_prr_t_2 = R(0.5)*Q_prr_t;
         const real Q_prr_t_3 = Q_prr_t_2*axis_y_prr_axes2_in_base_x -
@@ -1297,30 +1308,30 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real rel_prr_o_x = u_1_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr;
         /* (prr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_prr_o = inv_v_2_prr_t_2*(rel_prr_o_x*s_2_prr - c_2_prr*u_1_prr_tip_y);
-        /* (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_prr_o_x = -g_r0_x - c_2_prr*rel_prr_o_x - qdd_2_prr_o*v_2_prr_t -
             s_2_prr*u_1_prr_tip_y;
-        /* (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real f_1_prr_o_x = acc_1_prr_o_x*prr_link1_mass;
-        /* (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_prr_o_x = u_1_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr;
         const real acc_2_prr_o_y = u_1_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr;
-        /* (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_prr_o_z = acc_2_prr_o_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr_o -
             acc_2_prr_o_x*h_2_prr_y;
-        /* (prr-N25) remainder without the acceleration in: force at the connection point that balances
+        /* (prr-N26) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_prr_o_t = inv_v_2_prr_t_2*(mu_2_prr_o_z + f_1_prr_o_x*v_2_prr_t);
-        /* (prr-N28) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prr-N29) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_prr_o_x = G_prr_o_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_o_x -
             h_2_prr_y*qdd_2_prr_o;
         const real c_prr_o_y = W_2_prr_t*h_2_prr_y + f_1_prr_o_x*s_2_prr + h_2_prr_x*qdd_2_prr_o -
             G_prr_o_t*c_2_prr;
-        /* (prr-N30) velocity and gravity terms of the leg force */
+        /* (prr-N31) velocity and gravity terms of the leg force */
         const real U_prr_in_base_x = -axis_y_prr_axes2_in_base_x*c_prr_o_y -
             axis_y_prr_axes2_in_base_y*c_prr_o_x;
         const real U_prr_in_base_y = axis_y_prr_axes2_in_base_x*c_prr_o_x -
@@ -1328,10 +1339,10 @@ INLINE void dynamics_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t_3 = U_prr_in_base_y*q_prr_in_base_x - U_prr_in_base_x*q_prr_in_base_y;
         /* (prr-V3) reciprocal vector 1 */
-        const real w_1_prr_in_base_x = prr_base_frame_xx*w_1_prr_r0_x +
-            prr_base_frame_xy*w_1_prr_r0_y;
-        const real w_1_prr_in_base_y = prr_base_frame_yx*w_1_prr_r0_x +
-            prr_base_frame_yy*w_1_prr_r0_y;
+        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
         /* (M10) moment of the column's unit force about the platform origin */
         const real H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y -
             q_prr_in_base_y*w_1_prr_in_base_x;
@@ -1403,14 +1414,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real J_star_t_12 = m->J_star_t_12;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_prr_xx + total_rrr_xx - total_rpr_xx;
+        const real M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx;
         const real M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_prr_yy + total_rrr_yy - total_rpr_yy;
+        const real M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = total_rpr_xz - h_star_in_base_y - total_prr_xz - total_rrr_xz;
+        const real M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz;
         const real M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prr_zz + total_rrr_zz - J_star_t_12 - total_rpr_zz;
+        const real M_aa_zz = total_prr_zz - J_star_t_12 - total_rpr_zz - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y;
@@ -1517,7 +1528,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- M: 193 mul, 139 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 172 mul, 129 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
         h_star_in_base_y[LANES], sum[18][LANES];
@@ -1645,12 +1656,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real h_2_rrr_y = m->h_2_rrr_y[i];
         const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -1701,6 +1715,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
         const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
         const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr = 1/rho2_1_rrr;
@@ -1715,50 +1730,38 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x;
+        const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -1828,33 +1831,32 @@ INLINE void M_legs_prr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy -
             prr_base_frame_yx*s_2_prr;
         /* (prr-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_prr_t = c_2_prr*prr_platform_joint_offset_x;
+        const real v_2_prr_t = prr_platform_joint_offset_x*s_2_prr;
+        const real v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x;
         /* (prr-V3) reciprocal vector 1 */
-        const real inv_v_2_prr_t_2 = 1/v_2_prr_t;
-        const real w_1_prr_t = inv_v_2_prr_t_2*prr_platform_joint_offset_x*s_2_prr;
+        const real inv_v_2_prr_t_2 = 1/v_2_prr_t_2;
+        const real w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t;
         const real _r0_x = -c_2_prr - s_2_prr*w_1_prr_t;
-        const real _r0_y = c_2_prr*w_1_prr_t - s_2_prr;
-        /* (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight */
-        const real d_f_1_prr_xx = prr_link1_mass*(-_r0_x*c_2_prr - _r0_y*s_2_prr);
-        const real d_f_1_prr_xy = prr_link1_mass*(_r0_x*s_2_prr - _r0_y*c_2_prr);
+        /* (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_prr_t = inv_v_2_prr_t_2*prr_link1_mass*v_2_prr_t;
+        const real _r0_y = c_2_prr*d_Gamma_1_prr_t - prr_link1_mass*s_2_prr;
         /* (prr-V4) reciprocal vector 2 */
         const real w_2_prr_t = inv_v_2_prr_t_2*s_2_prr;
         const real w_2_prr_t_2 = c_2_prr*inv_v_2_prr_t_2;
-        /* (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_prr_zy = h_2_prr_x + J_2_prr_zz*w_2_prr_t_2;
-        /* (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+        /* (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_prr_r0_y = -c_2_prr*d_f_1_prr_xy - d_f_1_prr_xx*s_2_prr;
-        /* (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_Gamma_2_prr_t = J_2_prr_zz*inv_v_2_prr_t_2;
+        const real d_Gamma_2_prr_x = -h_2_prr_y - d_Gamma_2_prr_t*s_2_prr;
+        const real d_Gamma_2_prr_y = h_2_prr_x + c_2_prr*d_Gamma_2_prr_t;
+        /* (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prr_xx = w_2_prr_t*(-h_2_prr_y - J_2_prr_zz*w_2_prr_t) -
-            _r0_x*(d_f_1_prr_xy*s_2_prr - c_2_prr*d_f_1_prr_xx) - h_2_prr_y*w_2_prr_t;
-        const real d_c_prr_xy = d_mu_2_prr_zy*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 -
-            _r0_x*d_Gamma_1_prr_r0_y;
-        /* (prr-N29) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_prr_t = d_c_prr_xx + _r0_y*d_Gamma_1_prr_r0_y + d_mu_2_prr_zy*w_2_prr_t_2 +
-            h_2_prr_x*w_2_prr_t_2;
+        const real d_c_prr_xx = d_Gamma_2_prr_x*w_2_prr_t - _r0_x*(-c_2_prr*prr_link1_mass -
+            d_Gamma_1_prr_t*s_2_prr) - h_2_prr_y*w_2_prr_t;
+        const real d_c_prr_xy = d_Gamma_2_prr_y*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*_r0_y;
+        /* (prr-N30) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_prr_t = d_c_prr_xx + _r0_y*(c_2_prr*w_1_prr_t - s_2_prr) +
+            d_Gamma_2_prr_y*w_2_prr_t_2 + h_2_prr_x*w_2_prr_t_2;
         const real Q_prr_t_2 = R(0.5)*Q_prr_t;
         const real Q_prr_t_3 = Q_prr_t_2*axis_y_prr_axes2_in_base_x -
             axis_y_prr_axes2_in_base_y*d_c_prr_xy;
@@ -1876,7 +1878,7 @@ INLINE void M_legs_prr(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[4][k] = M_ta_t_6;  /* total_prr_yz */
         o->sum[5][k] = M_aa_t_3;  /* total_prr_zz */
         o->unreachable[k] = unless(disc_1_prr >= 0);
-        o->singular[k] = unless(magnitude(-v_2_prr_t) > TOLERANCE*size_prr);
+        o->singular[k] = unless(magnitude(-v_2_prr_t_2) > TOLERANCE*size_prr);
     }
 }
 
@@ -1914,14 +1916,14 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real J_star_t_12 = m->J_star_t_12;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_prr_xx + total_rrr_xx - total_rpr_xx;
+        const real M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx;
         const real M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_prr_yy + total_rrr_yy - total_rpr_yy;
+        const real M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = total_rpr_xz - h_star_in_base_y - total_prr_xz - total_rrr_xz;
+        const real M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz;
         const real M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prr_zz + total_rrr_zz - J_star_t_12 - total_rpr_zz;
+        const real M_aa_zz = total_prr_zz - J_star_t_12 - total_rpr_zz - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
@@ -2013,7 +2015,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 9, w, code, M);
 }
 
-/* ---- Z: 228 mul, 149 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 226 mul, 149 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], W_p_t[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[9][LANES];
@@ -2283,11 +2285,13 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -2298,35 +2302,35 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -2430,30 +2434,30 @@ INLINE void Z_legs_prr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rel_prr_o_x = u_1_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr;
         /* (prr-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_prr_o = inv_v_2_prr_t_2*(rel_prr_o_x*s_2_prr - c_2_prr*u_1_prr_tip_y);
-        /* (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_prr_o_x = -g_r0_x - c_2_prr*rel_prr_o_x - qdd_2_prr_o*v_2_prr_t -
             s_2_prr*u_1_prr_tip_y;
-        /* (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real f_1_prr_o_x = acc_1_prr_o_x*prr_link1_mass;
-        /* (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_prr_o_x = u_1_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr;
         const real acc_2_prr_o_y = u_1_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr;
-        /* (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_prr_o_z = acc_2_prr_o_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr_o -
             acc_2_prr_o_x*h_2_prr_y;
-        /* (prr-N25) remainder without the acceleration in: force at the connection point that balances
+        /* (prr-N26) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_prr_o_t = inv_v_2_prr_t_2*(mu_2_prr_o_z + f_1_prr_o_x*v_2_prr_t);
-        /* (prr-N28) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prr-N29) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_prr_o_x = G_prr_o_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_o_x -
             h_2_prr_y*qdd_2_prr_o;
         const real c_prr_o_y = W_2_prr_t*h_2_prr_y + f_1_prr_o_x*s_2_prr + h_2_prr_x*qdd_2_prr_o -
             G_prr_o_t*c_2_prr;
-        /* (prr-N30) velocity and gravity terms of the leg force */
+        /* (prr-N31) velocity and gravity terms of the leg force */
         const real U_prr_in_base_x = -axis_y_prr_axes2_in_base_x*c_prr_o_y -
             axis_y_prr_axes2_in_base_y*c_prr_o_x;
         const real U_prr_in_base_y = axis_y_prr_axes2_in_base_x*c_prr_o_x -
@@ -2807,18 +2811,21 @@ INLINE void H_legs_prr(const prepared *m, size_t leg, size_t legs, const H_value
         /* (prr-K8) sine of the angle of joint 2 from its reference direction */
         const real s_2_prr = inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy
             + S_prr_y*prr_base_frame_yy);
+        /* (prr-V3) reciprocal vector 1 */
+        const real axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy -
+            prr_base_frame_xx*s_2_prr;
+        const real axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy -
+            prr_base_frame_yx*s_2_prr;
         /* (prr-V2) velocity of the connection point per rate of joint 2 */
         const real v_2_prr_t = c_2_prr*prr_platform_joint_offset_x;
         /* (prr-V3) reciprocal vector 1 */
         const real w_1_prr_t = prr_platform_joint_offset_x*s_2_prr/v_2_prr_t;
         const real _r0_x = -c_2_prr - s_2_prr*w_1_prr_t;
         const real _r0_y = c_2_prr*w_1_prr_t - s_2_prr;
-        const real w_1_prr_r0_x = -_r0_x*c_2_prr - _r0_y*s_2_prr;
-        const real w_1_prr_r0_y = _r0_x*s_2_prr - _r0_y*c_2_prr;
-        const real w_1_prr_in_base_x = prr_base_frame_xx*w_1_prr_r0_x +
-            prr_base_frame_xy*w_1_prr_r0_y;
-        const real w_1_prr_in_base_y = prr_base_frame_yx*w_1_prr_r0_x +
-            prr_base_frame_yy*w_1_prr_r0_y;
+        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
         /* (M10) moment of the column's unit force about the platform origin */
         const real H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y -
             q_prr_in_base_y*w_1_prr_in_base_x;
@@ -2895,7 +2902,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- required: 256 mul, 173 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 254 mul, 173 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
@@ -3196,11 +3203,13 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -3218,7 +3227,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -3226,22 +3235,22 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
             J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
@@ -3350,6 +3359,14 @@ INLINE void required_legs_prr(const prepared *m, size_t leg, size_t legs, const 
             S_dot_prr_y*prr_base_frame_yy);
         /* (prr-V8) centripetal tensor of link 2 */
         const real W_2_prr_t = qd_2_prr*qd_2_prr;
+        /* (prr-V3) reciprocal vector 1 */
+        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
+        /* (M10) moment of the column's unit force about the platform origin */
+        const real H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y -
+            q_prr_in_base_y*w_1_prr_in_base_x;
         /* (prr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y;
         const real a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x;
@@ -3364,21 +3381,21 @@ INLINE void required_legs_prr(const prepared *m, size_t leg, size_t legs, const 
         const real rel_prr_x = S_ddot_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr;
         /* (prr-A7) acceleration of joint 1 */
         const real qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr);
-        /* (prr-N7) acceleration of the reference point of link 2, less gravity */
+        /* (prr-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_prr_x = S_ddot_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr;
         const real acc_2_prr_y = S_ddot_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr;
         /* (prr-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_prr_x = -g_r0_x - S_ddot_prr_tip_y*s_2_prr - c_2_prr*rel_prr_x -
             qdd_2_prr*v_2_prr_t;
-        /* (prr-N4) inertia force of link 1 less its weight */
+        /* (prr-N3) inertia force of link 1 less its weight */
         const real f_1_prr_x = acc_1_prr_x*prr_link1_mass;
-        /* (prr-N14) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_prr_z = acc_2_prr_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr -
             acc_2_prr_x*h_2_prr_y;
-        /* (prr-N23) force at the connection point that balances the leg's inertia and weight along all
+        /* (prr-N24) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_prr_t = inv_v_2_prr_t_2*(mu_2_prr_z + f_1_prr_x*v_2_prr_t);
-        /* (prr-N26) leg force on the platform without actuation and without the mass at the connection
+        /* (prr-N27) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_prr_x = G_prr_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_x -
             h_2_prr_y*qdd_2_prr;
@@ -3390,14 +3407,6 @@ INLINE void required_legs_prr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_prr_axes2_in_base_x*c_prr_x;
         /* (E5) moment that actuators and external wrench must give */
         const real R_a_t_3 = c_prr_in_base_y*q_prr_in_base_x - c_prr_in_base_x*q_prr_in_base_y;
-        /* (prr-V3) reciprocal vector 1 */
-        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
-            _r0_y*axis_y_prr_axes2_in_base_x;
-        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
-            _r0_x*axis_y_prr_axes2_in_base_x;
-        /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y -
-            q_prr_in_base_y*w_1_prr_in_base_x;
         o->sum[0][k] = c_prr_in_base_x;  /* total_prr_x */
         o->sum[1][k] = c_prr_in_base_y;  /* total_prr_y */
         o->sum[2][k] = R_a_t_3;  /* total_prr_z */
@@ -4128,7 +4137,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 6, w, code, rates);
 }
 
-/* ---- joint_accelerations: 149 mul, 86 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 148 mul, 86 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -4361,9 +4370,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
         const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
@@ -4374,8 +4385,7 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real rel_rrr_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
         const real rel_rrr_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
@@ -4554,7 +4564,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 6, w, code, accelerations);
 }
 
-/* ---- legs: 232 mul, 143 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 230 mul, 143 add, 4 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -4829,11 +4839,13 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -4849,7 +4861,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -4857,27 +4869,27 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
             J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
         const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
         const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
         const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
@@ -4982,6 +4994,11 @@ INLINE void legs_legs_prr(const prepared *m, size_t leg, size_t legs, const legs
             S_dot_prr_y*prr_base_frame_yy);
         /* (prr-V8) centripetal tensor of link 2 */
         const real W_2_prr_t = qd_2_prr*qd_2_prr;
+        /* (prr-V3) reciprocal vector 1 */
+        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
         /* (prr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y;
         const real a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x;
@@ -4996,38 +5013,33 @@ INLINE void legs_legs_prr(const prepared *m, size_t leg, size_t legs, const legs
         const real rel_prr_x = S_ddot_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr;
         /* (prr-A7) acceleration of joint 1 */
         const real qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr);
-        /* (prr-N7) acceleration of the reference point of link 2, less gravity */
+        /* (prr-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_prr_x = S_ddot_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr;
         const real acc_2_prr_y = S_ddot_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr;
         /* (prr-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_prr_x = -g_r0_x - S_ddot_prr_tip_y*s_2_prr - c_2_prr*rel_prr_x -
             qdd_2_prr*v_2_prr_t;
-        /* (prr-N4) inertia force of link 1 less its weight */
+        /* (prr-N3) inertia force of link 1 less its weight */
         const real f_1_prr_x = acc_1_prr_x*prr_link1_mass;
-        /* (prr-N14) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_prr_z = acc_2_prr_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr -
             acc_2_prr_x*h_2_prr_y;
-        /* (prr-N23) force at the connection point that balances the leg's inertia and weight along all
+        /* (prr-N24) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_prr_t = inv_v_2_prr_t_2*(mu_2_prr_z + f_1_prr_x*v_2_prr_t);
-        /* (prr-N26) leg force on the platform without actuation and without the mass at the connection
+        /* (prr-N27) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_prr_x = G_prr_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_x -
             h_2_prr_y*qdd_2_prr;
         const real c_prr_y = W_2_prr_t*h_2_prr_y + f_1_prr_x*s_2_prr + h_2_prr_x*qdd_2_prr -
             G_prr_t*c_2_prr;
-        /* (prr-N31) leg force on the platform without actuation, the last link's mass included */
+        /* (prr-N32) leg force on the platform without actuation, the last link's mass included */
         const real c_true_prr_x = c_prr_x - acc_2_prr_x*prr_link2_mass;
         const real c_true_prr_y = c_prr_y - acc_2_prr_y*prr_link2_mass;
         const real c_true_prr_in_base_x = axis_y_prr_axes2_in_base_x*c_true_prr_y +
             axis_y_prr_axes2_in_base_y*c_true_prr_x;
         const real c_true_prr_in_base_y = axis_y_prr_axes2_in_base_y*c_true_prr_y -
             axis_y_prr_axes2_in_base_x*c_true_prr_x;
-        /* (prr-V3) reciprocal vector 1 */
-        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
-            _r0_y*axis_y_prr_axes2_in_base_x;
-        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
-            _r0_x*axis_y_prr_axes2_in_base_x;
         o->entry[0][k] = c_true_prr_in_base_x;
         o->entry[1][k] = c_true_prr_in_base_y;
         o->entry[2][k] = w_1_prr_in_base_x;

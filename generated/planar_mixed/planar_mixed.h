@@ -134,8 +134,9 @@ typedef struct {
             rpr_base_point_y[1], rpr_link1_mass[1], rpr_link2_mass[1], rpr_platform_point_x[1],
             rpr_platform_point_y[1], size_rpr[1], size_rpr_t_4[1];
     /* legs of type rrr */
-    planar_mixed_real J_1_rrr_zz[1], J_2_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1], b_rrr_r0_x[1],
-            b_rrr_r0_y[1], branch_1_rrr[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr_x[1], h_1_rrr_y[1],
+    planar_mixed_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
+            b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1], d_Gamma_1_rrr_y[1],
+            d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr_x[1], h_1_rrr_y[1],
             h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rrr_platform_joint_offset_x[1],
             inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
             rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
@@ -160,13 +161,13 @@ extern const planar_mixed_real planar_mixed_HOME_Q[PLANAR_MIXED_NJ];
    model is all NaN. */
 int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *model);
 
-/* Inertia matrix M. 193 mul, 139 add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 172 mul, 129 add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_mixed_M(const planar_mixed_model *model, const planar_mixed_real *X, planar_mixed_real
     *M);
 size_t planar_mixed_M_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     planar_mixed_real *M, int *status);
 
-/* Velocity and gravity terms Z. 228 mul, 149 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 226 mul, 149 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_mixed_Z(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *Z);
@@ -180,7 +181,7 @@ int planar_mixed_H(const planar_mixed_model *model, const planar_mixed_real *X, 
 size_t planar_mixed_H_batch(const planar_mixed_model *model, size_t n, const planar_mixed_real *X,
     planar_mixed_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 349 mul, 246 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 326 mul, 236 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_mixed_dynamics(const planar_mixed_model *model, const planar_mixed_real *X, const
     planar_mixed_real *V, planar_mixed_real *M, planar_mixed_real *Z, planar_mixed_real *H);
@@ -202,7 +203,7 @@ int planar_mixed_joint_rates(const planar_mixed_model *model, const planar_mixed
 size_t planar_mixed_joint_rates_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *X, const planar_mixed_real *V, planar_mixed_real *rates, int *status);
 
-/* Accelerations of all joints. 149 mul, 86 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 148 mul, 86 add, 4 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_mixed_joint_accelerations(const planar_mixed_model *model, const planar_mixed_real *X,
     const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *accelerations);
@@ -210,7 +211,7 @@ size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, s
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
     planar_mixed_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 256 mul, 173 add, 4 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 254 mul, 173 add, 4 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_mixed_inverse_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -220,7 +221,7 @@ size_t planar_mixed_inverse_dynamics_batch(const planar_mixed_model *model, size
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
     planar_mixed_real *wrench, planar_mixed_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 349 mul, 246 add, 4 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 326 mul, 236 add, 4 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_mixed_forward_dynamics(const planar_mixed_model *model, const planar_mixed_real *X,
@@ -238,7 +239,7 @@ size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model,
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
     planar_mixed_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 232 mul, 143 add, 4 div, 3
+/* Force of each leg on the platform at its platform joint, base axes. 230 mul, 143 add, 4 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (3 x 3). */
 int planar_mixed_leg_reactions(const planar_mixed_model *model, const planar_mixed_real *X, const

@@ -482,11 +482,22 @@ def _prepare(p):
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
     # (rrr-G5) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-V6) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
+    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_yy = (
+    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
+    )
     # (L2) first moment about the platform origin
     h_star_t_5 = rrr_link2_mass*rrr_platform_point_x
     h_star_t_6 = rrr_link2_mass*rrr_platform_point_y
@@ -532,7 +543,7 @@ def _prepare(p):
     # (L3) inertia tensor about the platform origin
     J_star_t_9 = prr_link2_mass*size_prr_t_2
     J_star_t_10 = prr_link2_mass*size_prr_t_3
-    # (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx
     g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy
     # (prr-G2) first moment of link 1 about the origin of link 1
@@ -600,11 +611,16 @@ def _prepare(p):
         "rrr": {
             "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
             "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Jc_1_rrr_zz": np.broadcast_to(Jc_1_rrr_zz, _rrr),
             "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
             "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
             "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
             "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
             "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "d_Gamma_1_rrr_t": np.broadcast_to(d_Gamma_1_rrr_t, _rrr),
+            "d_Gamma_1_rrr_y": np.broadcast_to(d_Gamma_1_rrr_y, _rrr),
+            "d_c_rrr_yy": np.broadcast_to(d_c_rrr_yy, _rrr),
+            "d_phi_2_rrr_t": np.broadcast_to(d_phi_2_rrr_t, _rrr),
             "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr),
             "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr),
             "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
@@ -807,7 +823,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 349 mul, 246 add, 4 div, 3 sqrt, 0 trig
+# dynamics: 326 mul, 236 add, 4 div, 3 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -938,7 +954,8 @@ def _dynamics_rpr(c, k, x, s, f):
 def _dynamics_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
+    J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+        d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2, g_r0_y_2,
         h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
         inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
         rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
@@ -996,43 +1013,31 @@ def _dynamics_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x
-    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x
+    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r1_x = c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr
     g_r1_y = c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr
@@ -1051,13 +1056,12 @@ def _dynamics_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -1065,44 +1069,44 @@ def _dynamics_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
     Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
     # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
     # (M9) moment of the column's unit force about the platform origin
-    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3
+    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (
     ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
-        U_rrr_in_base_y, Z_a_t_2,), (-w_1_rrr_t_3, w_1_rrr_t_4, H_a_1_rrr_z,),
+        U_rrr_in_base_y, Z_a_t_2,), (-w_1_rrr_t, w_1_rrr_t_2, H_a_1_rrr_z,),
     )
 
 
@@ -1143,28 +1147,24 @@ def _dynamics_prr(c, k, x, s, f):
     w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t
     _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
     _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-    w_1_prr_r0_x = -_r0_x*c_2_prr - _r0_y*s_2_prr
-    w_1_prr_r0_y = _r0_x*s_2_prr - _r0_y*c_2_prr
-    # (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight
-    d_f_1_prr_xx = prr_link1_mass*w_1_prr_r0_x
-    d_f_1_prr_xy = prr_link1_mass*w_1_prr_r0_y
+    # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+    d_Gamma_1_prr_t = inv_v_2_prr_t_2*prr_link1_mass*v_2_prr_t
+    _r0_y_2 = c_2_prr*d_Gamma_1_prr_t - prr_link1_mass*s_2_prr
     # (prr-V4) reciprocal vector 2
     w_2_prr_t = inv_v_2_prr_t_2*s_2_prr
     w_2_prr_t_2 = c_2_prr*inv_v_2_prr_t_2
-    # (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_prr_zy = h_2_prr_x + J_2_prr_zz*w_2_prr_t_2
-    # (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_prr_r0_y = -c_2_prr*d_f_1_prr_xy - d_f_1_prr_xx*s_2_prr
-    # (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_prr_t = J_2_prr_zz*inv_v_2_prr_t_2
+    d_Gamma_2_prr_x = -h_2_prr_y - d_Gamma_2_prr_t*s_2_prr
+    d_Gamma_2_prr_y = h_2_prr_x + c_2_prr*d_Gamma_2_prr_t
+    # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_prr_xx = (
-    w_2_prr_t*(-h_2_prr_y - J_2_prr_zz*w_2_prr_t) - _r0_x*(d_f_1_prr_xy*s_2_prr -
-        c_2_prr*d_f_1_prr_xx) - h_2_prr_y*w_2_prr_t
+    d_Gamma_2_prr_x*w_2_prr_t - _r0_x*(-c_2_prr*prr_link1_mass - d_Gamma_1_prr_t*s_2_prr) -
+        h_2_prr_y*w_2_prr_t
     )
-    d_c_prr_xy = d_mu_2_prr_zy*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*d_Gamma_1_prr_r0_y
-    # (prr-N29) inertia of the leg at the connection point, without the mass gathered there
-    Q_prr_t = (
-    d_c_prr_xx + _r0_y*d_Gamma_1_prr_r0_y + d_mu_2_prr_zy*w_2_prr_t_2 + h_2_prr_x*w_2_prr_t_2
-    )
+    d_c_prr_xy = d_Gamma_2_prr_y*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*_r0_y_2
+    # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
+    Q_prr_t = d_c_prr_xx + _r0_y*_r0_y_2 + d_Gamma_2_prr_y*w_2_prr_t_2 + h_2_prr_x*w_2_prr_t_2
     Q_prr_t_2 = 0.5*Q_prr_t
     Q_prr_t_3 = Q_prr_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_prr_xy
     Q_prr_t_4 = Q_prr_t_2*axis_y_prr_axes2_in_base_y + axis_y_prr_axes2_in_base_x*d_c_prr_xy
@@ -1194,32 +1194,32 @@ def _dynamics_prr(c, k, x, s, f):
     rel_prr_o_x = u_1_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
     # (prr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_prr_o = inv_v_2_prr_t_2*(rel_prr_o_x*s_2_prr - c_2_prr*u_1_prr_tip_y)
-    # (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_prr_o_x = -g_r0_x - c_2_prr*rel_prr_o_x - qdd_2_prr_o*v_2_prr_t - s_2_prr*u_1_prr_tip_y
-    # (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight
+    # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
     f_1_prr_o_x = acc_1_prr_o_x*prr_link1_mass
-    # (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_prr_o_x = u_1_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
     acc_2_prr_o_y = u_1_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
-    # (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_prr_o_z = acc_2_prr_o_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr_o - acc_2_prr_o_x*h_2_prr_y
-    # (prr-N25) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prr_o_t = inv_v_2_prr_t_2*(mu_2_prr_o_z + f_1_prr_o_x*v_2_prr_t)
-    # (prr-N28) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_prr_o_x = (
     G_prr_o_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_o_x - h_2_prr_y*qdd_2_prr_o
     )
     c_prr_o_y = (
     W_2_prr_t*h_2_prr_y + f_1_prr_o_x*s_2_prr + h_2_prr_x*qdd_2_prr_o - G_prr_o_t*c_2_prr
     )
-    # (prr-N30) velocity and gravity terms of the leg force
+    # (prr-N31) velocity and gravity terms of the leg force
     U_prr_in_base_x = -axis_y_prr_axes2_in_base_x*c_prr_o_y - axis_y_prr_axes2_in_base_y*c_prr_o_x
     U_prr_in_base_y = axis_y_prr_axes2_in_base_x*c_prr_o_x - axis_y_prr_axes2_in_base_y*c_prr_o_y
     # (M7) rotational part of Z
     Z_a_t_3 = U_prr_in_base_y*q_prr_in_base_x - U_prr_in_base_x*q_prr_in_base_y
     # (prr-V3) reciprocal vector 1
-    w_1_prr_in_base_x = prr_base_frame_xx*w_1_prr_r0_x + prr_base_frame_xy*w_1_prr_r0_y
-    w_1_prr_in_base_y = prr_base_frame_yx*w_1_prr_r0_x + prr_base_frame_yy*w_1_prr_r0_y
+    w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     # (M10) moment of the column's unit force about the platform origin
     H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
     ok = (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr)
@@ -1240,14 +1240,14 @@ def _dynamics_after(c, s, t, f):
         total_prr_x, total_prr_y, total_prr_z,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_prr_xx + total_rrr_xx - total_rpr_xx
+    M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx
     M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_prr_yy + total_rrr_yy - total_rpr_yy
+    M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = total_rpr_xz - h_star_in_base_y - total_prr_xz - total_rrr_xz
+    M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz
     M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_prr_zz + total_rrr_zz - J_star_t_12 - total_rpr_zz
+    M_aa_zz = total_prr_zz - J_star_t_12 - total_rpr_zz - total_rrr_zz
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y
@@ -1260,7 +1260,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 193 mul, 139 add, 4 div, 3 sqrt, 0 trig
+# M: 172 mul, 129 add, 4 div, 3 sqrt, 0 trig
 def _M_before(c, X, f):
     sin = f.sin
     cos = f.cos
@@ -1330,11 +1330,12 @@ def _M_rpr(c, k, x, s, f):
 def _M_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, h_2_rrr_x, h_2_rrr_y,
-        inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+        d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+        inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+        rrr_platform_point_y, size_rrr,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rrr-K1) from the base point to the connection point
@@ -1370,6 +1371,7 @@ def _M_rrr(c, k, x, s, f):
     # (rrr-V2) from joint 1 to the connection point, along the links
     r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
     r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
     r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
     # (rrr-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr = 1.0/rho2_1_rrr
@@ -1386,45 +1388,31 @@ def _M_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x
-    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y - M_ta_t_4*q_rrr_in_base_x
+    M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2,), (),)
 
@@ -1459,31 +1447,32 @@ def _M_prr(c, k, x, s, f):
     axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
     axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
     # (prr-V2) velocity of the connection point per rate of joint 2
-    v_2_prr_t = c_2_prr*prr_platform_joint_offset_x
+    v_2_prr_t = prr_platform_joint_offset_x*s_2_prr
+    v_2_prr_t_2 = c_2_prr*prr_platform_joint_offset_x
     # (prr-V3) reciprocal vector 1
-    inv_v_2_prr_t_2 = 1.0/v_2_prr_t
-    w_1_prr_t = inv_v_2_prr_t_2*prr_platform_joint_offset_x*s_2_prr
+    inv_v_2_prr_t_2 = 1.0/v_2_prr_t_2
+    w_1_prr_t = inv_v_2_prr_t_2*v_2_prr_t
     _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
-    _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-    # (prr-N5) coefficient of the acceleration in: inertia force of link 1 less its weight
-    d_f_1_prr_xx = prr_link1_mass*(-_r0_x*c_2_prr - _r0_y*s_2_prr)
-    d_f_1_prr_xy = prr_link1_mass*(_r0_x*s_2_prr - _r0_y*c_2_prr)
+    # (prr-N22) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+    d_Gamma_1_prr_t = inv_v_2_prr_t_2*prr_link1_mass*v_2_prr_t
+    _r0_y = c_2_prr*d_Gamma_1_prr_t - prr_link1_mass*s_2_prr
     # (prr-V4) reciprocal vector 2
     w_2_prr_t = inv_v_2_prr_t_2*s_2_prr
     w_2_prr_t_2 = c_2_prr*inv_v_2_prr_t_2
-    # (prr-N15) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_prr_zy = h_2_prr_x + J_2_prr_zz*w_2_prr_t_2
-    # (prr-N21) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_prr_r0_y = -c_2_prr*d_f_1_prr_xy - d_f_1_prr_xx*s_2_prr
-    # (prr-N27) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_prr_t = J_2_prr_zz*inv_v_2_prr_t_2
+    d_Gamma_2_prr_x = -h_2_prr_y - d_Gamma_2_prr_t*s_2_prr
+    d_Gamma_2_prr_y = h_2_prr_x + c_2_prr*d_Gamma_2_prr_t
+    # (prr-N28) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_prr_xx = (
-    w_2_prr_t*(-h_2_prr_y - J_2_prr_zz*w_2_prr_t) - _r0_x*(d_f_1_prr_xy*s_2_prr -
-        c_2_prr*d_f_1_prr_xx) - h_2_prr_y*w_2_prr_t
+    d_Gamma_2_prr_x*w_2_prr_t - _r0_x*(-c_2_prr*prr_link1_mass - d_Gamma_1_prr_t*s_2_prr) -
+        h_2_prr_y*w_2_prr_t
     )
-    d_c_prr_xy = d_mu_2_prr_zy*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*d_Gamma_1_prr_r0_y
-    # (prr-N29) inertia of the leg at the connection point, without the mass gathered there
+    d_c_prr_xy = d_Gamma_2_prr_y*w_2_prr_t + h_2_prr_y*w_2_prr_t_2 - _r0_x*_r0_y
+    # (prr-N30) inertia of the leg at the connection point, without the mass gathered there
     Q_prr_t = (
-    d_c_prr_xx + _r0_y*d_Gamma_1_prr_r0_y + d_mu_2_prr_zy*w_2_prr_t_2 + h_2_prr_x*w_2_prr_t_2
+    d_c_prr_xx + _r0_y*(c_2_prr*w_1_prr_t - s_2_prr) + d_Gamma_2_prr_y*w_2_prr_t_2 +
+        h_2_prr_x*w_2_prr_t_2
     )
     Q_prr_t_2 = 0.5*Q_prr_t
     Q_prr_t_3 = Q_prr_t_2*axis_y_prr_axes2_in_base_x - axis_y_prr_axes2_in_base_y*d_c_prr_xy
@@ -1496,7 +1485,7 @@ def _M_prr(c, k, x, s, f):
     M_ta_t_6 = Q_prr_t_6*q_prr_in_base_y - Q_prr_t_7*q_prr_in_base_x
     # (M3) rotational block of M
     M_aa_t_3 = M_ta_t_5*q_prr_in_base_y - M_ta_t_6*q_prr_in_base_x
-    ok = (disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr)
+    ok = (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr)
     return (ok, (Q_prr_t_5, Q_prr_t_6, Q_prr_t_7, M_ta_t_5, M_ta_t_6, M_aa_t_3,), (),)
 
 
@@ -1509,21 +1498,21 @@ def _M_after(c, s, t, f):
         total_prr_xx, total_prr_xy, total_prr_yy, total_prr_xz, total_prr_yz, total_prr_zz,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_prr_xx + total_rrr_xx - total_rpr_xx
+    M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx
     M_tt_xy = total_prr_xy + total_rpr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_prr_yy + total_rrr_yy - total_rpr_yy
+    M_tt_yy = m_star + total_prr_yy - total_rpr_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = total_rpr_xz - h_star_in_base_y - total_prr_xz - total_rrr_xz
+    M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz
     M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_prr_zz + total_rrr_zz - J_star_t_12 - total_rpr_zz
+    M_aa_zz = total_prr_zz - J_star_t_12 - total_rpr_zz - total_rrr_zz
     ok = True
     return (
     ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, M_ta_xz, M_ta_xz, M_ta_yz, M_ta_yz, M_aa_zz,),
     )
 
 
-# Z: 228 mul, 149 add, 4 div, 3 sqrt, 0 trig
+# Z: 226 mul, 149 add, 4 div, 3 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -1703,13 +1692,12 @@ def _Z_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -1717,31 +1705,31 @@ def _Z_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
@@ -1802,25 +1790,25 @@ def _Z_prr(c, k, x, s, f):
     rel_prr_o_x = u_1_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
     # (prr-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_prr_o = inv_v_2_prr_t_2*(rel_prr_o_x*s_2_prr - c_2_prr*u_1_prr_tip_y)
-    # (prr-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_prr_o_x = -g_r0_x - c_2_prr*rel_prr_o_x - qdd_2_prr_o*v_2_prr_t - s_2_prr*u_1_prr_tip_y
-    # (prr-N6) remainder without the acceleration in: inertia force of link 1 less its weight
+    # (prr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
     f_1_prr_o_x = acc_1_prr_o_x*prr_link1_mass
-    # (prr-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_prr_o_x = u_1_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
     acc_2_prr_o_y = u_1_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
-    # (prr-N16) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_prr_o_z = acc_2_prr_o_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr_o - acc_2_prr_o_x*h_2_prr_y
-    # (prr-N25) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N26) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prr_o_t = inv_v_2_prr_t_2*(mu_2_prr_o_z + f_1_prr_o_x*v_2_prr_t)
-    # (prr-N28) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N29) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_prr_o_x = (
     G_prr_o_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_o_x - h_2_prr_y*qdd_2_prr_o
     )
     c_prr_o_y = (
     W_2_prr_t*h_2_prr_y + f_1_prr_o_x*s_2_prr + h_2_prr_x*qdd_2_prr_o - G_prr_o_t*c_2_prr
     )
-    # (prr-N30) velocity and gravity terms of the leg force
+    # (prr-N31) velocity and gravity terms of the leg force
     U_prr_in_base_x = -axis_y_prr_axes2_in_base_x*c_prr_o_y - axis_y_prr_axes2_in_base_y*c_prr_o_x
     U_prr_in_base_y = axis_y_prr_axes2_in_base_x*c_prr_o_x - axis_y_prr_axes2_in_base_y*c_prr_o_y
     # (M7) rotational part of Z
@@ -1981,23 +1969,24 @@ def _H_prr(c, k, x, s, f):
     inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy +
         S_prr_y*prr_base_frame_yy)
     )
+    # (prr-V3) reciprocal vector 1
+    axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy - prr_base_frame_xx*s_2_prr
+    axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy - prr_base_frame_yx*s_2_prr
     # (prr-V2) velocity of the connection point per rate of joint 2
     v_2_prr_t = c_2_prr*prr_platform_joint_offset_x
     # (prr-V3) reciprocal vector 1
     w_1_prr_t = prr_platform_joint_offset_x*s_2_prr/v_2_prr_t
     _r0_x = -c_2_prr - s_2_prr*w_1_prr_t
     _r0_y = c_2_prr*w_1_prr_t - s_2_prr
-    w_1_prr_r0_x = -_r0_x*c_2_prr - _r0_y*s_2_prr
-    w_1_prr_r0_y = _r0_x*s_2_prr - _r0_y*c_2_prr
-    w_1_prr_in_base_x = prr_base_frame_xx*w_1_prr_r0_x + prr_base_frame_xy*w_1_prr_r0_y
-    w_1_prr_in_base_y = prr_base_frame_yx*w_1_prr_r0_x + prr_base_frame_yy*w_1_prr_r0_y
+    w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     # (M10) moment of the column's unit force about the platform origin
     H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
     ok = (disc_1_prr >= 0.0) & (abs(-v_2_prr_t) > _TOLERANCE * size_prr)
     return (ok, (), (w_1_prr_in_base_x, w_1_prr_in_base_y, H_a_1_prr_z,),)
 
 
-# required: 256 mul, 173 add, 4 div, 3 sqrt, 0 trig
+# required: 254 mul, 173 add, 4 div, 3 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2198,13 +2187,12 @@ def _required_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -2224,7 +2212,7 @@ def _required_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -2234,22 +2222,22 @@ def _required_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
         h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
@@ -2311,6 +2299,11 @@ def _required_prr(c, k, x, s, f):
     qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
     # (prr-V8) centripetal tensor of link 2
     W_2_prr_t = qd_2_prr*qd_2_prr
+    # (prr-V3) reciprocal vector 1
+    w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
+    # (M10) moment of the column's unit force about the platform origin
+    H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
     # (prr-A2) acceleration of the connection point without its centripetal part
     a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y
     a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x
@@ -2327,29 +2320,24 @@ def _required_prr(c, k, x, s, f):
     rel_prr_x = S_ddot_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
     # (prr-A7) acceleration of joint 1
     qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr)
-    # (prr-N7) acceleration of the reference point of link 2, less gravity
+    # (prr-N5) acceleration of the reference point of link 2, less gravity
     acc_2_prr_x = S_ddot_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
     acc_2_prr_y = S_ddot_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
     # (prr-N1) acceleration of the reference point of link 1, less gravity
     acc_1_prr_x = -g_r0_x - S_ddot_prr_tip_y*s_2_prr - c_2_prr*rel_prr_x - qdd_2_prr*v_2_prr_t
-    # (prr-N4) inertia force of link 1 less its weight
+    # (prr-N3) inertia force of link 1 less its weight
     f_1_prr_x = acc_1_prr_x*prr_link1_mass
-    # (prr-N14) inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_prr_z = acc_2_prr_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr - acc_2_prr_x*h_2_prr_y
-    # (prr-N23) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prr_t = inv_v_2_prr_t_2*(mu_2_prr_z + f_1_prr_x*v_2_prr_t)
-    # (prr-N26) leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
     c_prr_x = G_prr_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_x - h_2_prr_y*qdd_2_prr
     c_prr_y = W_2_prr_t*h_2_prr_y + f_1_prr_x*s_2_prr + h_2_prr_x*qdd_2_prr - G_prr_t*c_2_prr
     c_prr_in_base_x = axis_y_prr_axes2_in_base_x*c_prr_y + axis_y_prr_axes2_in_base_y*c_prr_x
     c_prr_in_base_y = axis_y_prr_axes2_in_base_y*c_prr_y - axis_y_prr_axes2_in_base_x*c_prr_x
     # (E5) moment that actuators and external wrench must give
     R_a_t_3 = c_prr_in_base_y*q_prr_in_base_x - c_prr_in_base_x*q_prr_in_base_y
-    # (prr-V3) reciprocal vector 1
-    w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-    w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
-    # (M10) moment of the column's unit force about the platform origin
-    H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y - q_prr_in_base_y*w_1_prr_in_base_x
     ok = (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr)
     return (
     ok, (c_prr_in_base_x, c_prr_in_base_y, R_a_t_3,), (w_1_prr_in_base_x, w_1_prr_in_base_y,
@@ -2659,7 +2647,7 @@ def _joint_rates_prr(c, k, x, s, f):
     return (ok, (), (qd_2_prr_t, -qd_2_prr,),)
 
 
-# joint_accelerations: 149 mul, 86 add, 4 div, 3 sqrt, 0 trig
+# joint_accelerations: 148 mul, 86 add, 4 div, 3 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2813,10 +2801,12 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr_x = (
     -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
+        W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     )
     # (rrr-A2) acceleration of the connection point without its centripetal part
     a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
@@ -2830,7 +2820,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     )
     rel_rrr_y = (
     S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-        qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+        W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     )
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
@@ -2901,7 +2891,7 @@ def _joint_accelerations_prr(c, k, x, s, f):
     return (ok, (), (-qdd_1_prr_t, -qdd_2_prr,),)
 
 
-# legs: 232 mul, 143 add, 4 div, 3 sqrt, 0 trig
+# legs: 230 mul, 143 add, 4 div, 3 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -3082,13 +3072,12 @@ def _legs_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -3106,7 +3095,7 @@ def _legs_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -3116,28 +3105,28 @@ def _legs_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
         h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
     )
     c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    # (rrr-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
     c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
     c_true_rrr_in_base_x = (
@@ -3197,6 +3186,9 @@ def _legs_prr(c, k, x, s, f):
     qd_2_prr = inv_v_2_prr_t_2*(S_dot_prr_x*prr_base_frame_xy + S_dot_prr_y*prr_base_frame_yy)
     # (prr-V8) centripetal tensor of link 2
     W_2_prr_t = qd_2_prr*qd_2_prr
+    # (prr-V3) reciprocal vector 1
+    w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
+    w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     # (prr-A2) acceleration of the connection point without its centripetal part
     a_p_prr_x = t_ddot_x - alpha_z*q_prr_in_base_y
     a_p_prr_y = t_ddot_y + alpha_z*q_prr_in_base_x
@@ -3213,21 +3205,21 @@ def _legs_prr(c, k, x, s, f):
     rel_prr_x = S_ddot_prr_tip_x + prr_platform_joint_offset_x*qd_2_prr*qd_2_prr
     # (prr-A7) acceleration of joint 1
     qdd_2_prr = inv_v_2_prr_t_2*(rel_prr_x*s_2_prr - S_ddot_prr_tip_y*c_2_prr)
-    # (prr-N7) acceleration of the reference point of link 2, less gravity
+    # (prr-N5) acceleration of the reference point of link 2, less gravity
     acc_2_prr_x = S_ddot_prr_tip_x + c_2_prr*g_r0_x - g_r0_y*s_2_prr
     acc_2_prr_y = S_ddot_prr_tip_y + c_2_prr*g_r0_y + g_r0_x*s_2_prr
     # (prr-N1) acceleration of the reference point of link 1, less gravity
     acc_1_prr_x = -g_r0_x - S_ddot_prr_tip_y*s_2_prr - c_2_prr*rel_prr_x - qdd_2_prr*v_2_prr_t
-    # (prr-N4) inertia force of link 1 less its weight
+    # (prr-N3) inertia force of link 1 less its weight
     f_1_prr_x = acc_1_prr_x*prr_link1_mass
-    # (prr-N14) inertia moment of the links that turn with link 2, about their reference points
+    # (prr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_prr_z = acc_2_prr_y*h_2_prr_x - J_2_prr_zz*qdd_2_prr - acc_2_prr_x*h_2_prr_y
-    # (prr-N23) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prr-N24) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prr_t = inv_v_2_prr_t_2*(mu_2_prr_z + f_1_prr_x*v_2_prr_t)
-    # (prr-N26) leg force on the platform without actuation and without the mass at the connection point
+    # (prr-N27) leg force on the platform without actuation and without the mass at the connection point
     c_prr_x = G_prr_t*s_2_prr + W_2_prr_t*h_2_prr_x + c_2_prr*f_1_prr_x - h_2_prr_y*qdd_2_prr
     c_prr_y = W_2_prr_t*h_2_prr_y + f_1_prr_x*s_2_prr + h_2_prr_x*qdd_2_prr - G_prr_t*c_2_prr
-    # (prr-N31) leg force on the platform without actuation, the last link's mass included
+    # (prr-N32) leg force on the platform without actuation, the last link's mass included
     c_true_prr_x = c_prr_x - acc_2_prr_x*prr_link2_mass
     c_true_prr_y = c_prr_y - acc_2_prr_y*prr_link2_mass
     c_true_prr_in_base_x = (
@@ -3236,9 +3228,6 @@ def _legs_prr(c, k, x, s, f):
     c_true_prr_in_base_y = (
     axis_y_prr_axes2_in_base_y*c_true_prr_y - axis_y_prr_axes2_in_base_x*c_true_prr_x
     )
-    # (prr-V3) reciprocal vector 1
-    w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y + _r0_y*axis_y_prr_axes2_in_base_x
-    w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y - _r0_x*axis_y_prr_axes2_in_base_x
     ok = (disc_1_prr >= 0.0) & (abs(-v_2_prr_t_2) > _TOLERANCE * size_prr)
     return (
     ok, (), (c_true_prr_in_base_x, c_true_prr_in_base_y, w_1_prr_in_base_x, w_1_prr_in_base_y,),
@@ -3435,7 +3424,8 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 3))),
             _dynamics_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x_2',
+('J_1_rrr_zz', 'J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr',
+            'd_Gamma_1_rrr_t', 'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'g_r0_x_2',
             'g_r0_y_2', 'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
             'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
             'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
@@ -3507,10 +3497,11 @@ arrays=(('M', (3, 3)),),
             _M_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'h_2_rrr_x',
-            'h_2_rrr_y', 'inv_Kd_1_rrr_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t',
-            'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+('J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'd_Gamma_1_rrr_t',
+            'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
             'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
             'size_rrr'),
 (),

@@ -468,26 +468,43 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real J_3_prrr_t = prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
             rho_tip_3_prrr_x*rho_tip_3_prrr_x;
         const real J_3_prrr_zz = prrr_link3_inertia_zz + J_3_prrr_t*prrr_link3_mass;
-        /* (prrr-V6) reciprocal vector 2 */
-        const real inv_prrr_platform_joint_offset_x = 1/prrr_platform_joint_offset_x;
+        /* (prrr-N19) inertia tensor of the links from 2 outwards about joint 2 */
+        const real Jc_2_prrr_zz = J_2_prrr_zz + J_3_prrr_zz;
         /* (prrr-G6) first moment of link 3 about the connection point */
         const real h_3_prrr_x = prrr_link3_mass*rho_tip_3_prrr_x;
         const real h_3_prrr_y = prrr_link3_centre_of_mass_y*prrr_link3_mass;
+        /* (prrr-V6) reciprocal vector 2 */
+        const real inv_prrr_platform_joint_offset_x = 1/prrr_platform_joint_offset_x;
+        /* (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_prrr_t = J_3_prrr_zz*inv_prrr_platform_joint_offset_x;
+        const real d_Gamma_2_prrr_y = d_Gamma_2_prrr_t + h_3_prrr_x;
+        /* (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_prrr_t = d_Gamma_2_prrr_y*inv_prrr_platform_joint_offset_x;
+        /* (prrr-N14) coefficient of the acceleration in: inertia force of link 3 from its turning about
+           its reference point */
+        const real d_phi_3_prrr_t = h_3_prrr_y*inv_prrr_platform_joint_offset_x;
+        /* (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_prrr_yy = -d_G_prrr_t - h_3_prrr_x*inv_prrr_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_3 = prrr_link3_mass*prrr_platform_point_x;
         const real h_star_t_4 = prrr_link3_mass*prrr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
         const real J_star_t_5 = prrr_link3_mass*size_prrr_t_2;
         const real J_star_t_6 = prrr_link3_mass*size_prrr_t_3;
-        /* (prrr-N7) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy;
         const real g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx;
         /* (prrr-G3) first moment of link 2 about the origin of link 2 */
         const real h_2_prrr_x = prrr_link2_centre_of_mass_x*prrr_link2_mass;
         const real h_2_prrr_y = prrr_link2_centre_of_mass_y*prrr_link2_mass;
-        /* (prrr-N5) remainder without the acceleration in: inertia force of link 1 less its weight */
+        /* (prrr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real f_1_prrr_o_x = g_r0_x*prrr_link1_mass;
+        /* (prrr-N24) force that accelerates joint 1, per unit */
+        const real P_c1_prrr_t = prrr_link1_mass + prrr_link2_mass;
         /* (prrr-G2) first moment of link 1 about the origin of link 1 */
         const real h_1_prrr_x = prrr_link1_centre_of_mass_x*prrr_link1_mass;
         const real h_1_prrr_y = prrr_link1_centre_of_mass_y*prrr_link1_mass;
@@ -500,10 +517,17 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real potential_t_2 = b_prrr_r0_y*prrr_link2_mass;
         model->J_2_prrr_zz[leg] = J_2_prrr_zz;
         model->J_3_prrr_zz[leg] = J_3_prrr_zz;
+        model->Jc_2_prrr_zz[leg] = Jc_2_prrr_zz;
         model->Kd_2_prrr_t_2[leg] = Kd_2_prrr_t_2;
         model->Kd_2_prrr_t_3[leg] = Kd_2_prrr_t_3;
+        model->P_c1_prrr_t[leg] = P_c1_prrr_t;
         model->b_prrr_r0_x[leg] = b_prrr_r0_x;
         model->branch_2_prrr[leg] = branch_2_prrr;
+        model->d_G_prrr_t[leg] = d_G_prrr_t;
+        model->d_Gamma_2_prrr_t[leg] = d_Gamma_2_prrr_t;
+        model->d_Gamma_2_prrr_y[leg] = d_Gamma_2_prrr_y;
+        model->d_c_prrr_yy[leg] = d_c_prrr_yy;
+        model->d_phi_3_prrr_t[leg] = d_phi_3_prrr_t;
         model->f_1_prrr_o_x[leg] = f_1_prrr_o_x;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
@@ -590,11 +614,24 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
+            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_5 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_6 = rrr_link2_mass*rrr_platform_point_y;
@@ -615,11 +652,16 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
+        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
         model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
         model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
         model->b_rrr_r0_x[leg] = b_rrr_r0_x;
         model->b_rrr_r0_y[leg] = b_rrr_r0_y;
         model->branch_1_rrr[leg] = branch_1_rrr;
+        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
+        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
+        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
+        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
         model->g_r0_x_2[leg] = g_r0_x_2;
         model->g_r0_y_2[leg] = g_r0_y_2;
         model->h_1_rrr_x[leg] = h_1_rrr_x;
@@ -674,7 +716,7 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 511 mul, 331 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 435 mul, 299 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
@@ -753,9 +795,16 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real omega_z = s->omega_z[j];
         const real J_2_prrr_zz = m->J_2_prrr_zz[i];
         const real J_3_prrr_zz = m->J_3_prrr_zz[i];
+        const real Jc_2_prrr_zz = m->Jc_2_prrr_zz[i];
         const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
         const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
+        const real P_c1_prrr_t = m->P_c1_prrr_t[i];
         const real branch_2_prrr = m->branch_2_prrr[i];
+        const real d_G_prrr_t = m->d_G_prrr_t[i];
+        const real d_Gamma_2_prrr_t = m->d_Gamma_2_prrr_t[i];
+        const real d_Gamma_2_prrr_y = m->d_Gamma_2_prrr_y[i];
+        const real d_c_prrr_yy = m->d_c_prrr_yy[i];
+        const real d_phi_3_prrr_t = m->d_phi_3_prrr_t[i];
         const real f_1_prrr_o_x = m->f_1_prrr_o_x[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
@@ -773,7 +822,6 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link1_mass = m->prrr_link1_mass[i];
         const real prrr_link2_mass = m->prrr_link2_mass[i];
         const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
@@ -831,52 +879,42 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
         const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        const real w_2_prrr_t = c_3_prrr*inv_r_2_prrr_r0_y;
-        const real w_2_prrr_t_2 = inv_r_2_prrr_r0_y*s_3_prrr;
         /* (prrr-V6) reciprocal vector 2 */
         const real w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x;
-        /* (prrr-A22) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_prrr_zx = w_3_prrr_t - c_3_prrr*w_2_prrr_t - s_3_prrr*w_2_prrr_t_2;
-        const real d_alpha_3_prrr_zy = inv_prrr_platform_joint_offset_x + c_3_prrr*w_2_prrr_t_2 -
-            s_3_prrr*w_2_prrr_t;
-        /* (prrr-N23) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_prrr_zx = J_3_prrr_zz*d_alpha_3_prrr_zx - h_3_prrr_y;
-        const real d_mu_3_prrr_zy = h_3_prrr_x + J_3_prrr_zz*d_alpha_3_prrr_zy;
-        /* (prrr-N37) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_prrr_zx = c_3_prrr*d_mu_3_prrr_zx + d_mu_3_prrr_zy*s_3_prrr -
-            J_2_prrr_zz*w_2_prrr_t;
-        const real d_N_2_prrr_zy = J_2_prrr_zz*w_2_prrr_t_2 + c_3_prrr*d_mu_3_prrr_zy -
-            d_mu_3_prrr_zx*s_3_prrr;
+        /* (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x;
+        const real d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz -
+            d_Gamma_2_prrr_t_2);
+        /* (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz -
+            d_Gamma_2_prrr_t_2);
         /* (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_prrr_t = d_mu_3_prrr_zy*inv_prrr_platform_joint_offset_x;
-        const real d_G_prrr_xx = d_mu_3_prrr_zx*w_3_prrr_t -
-            inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zx - d_N_2_prrr_zy*s_3_prrr);
-        const real d_G_prrr_xy = d_mu_3_prrr_zy*w_3_prrr_t -
-            inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zy + d_N_2_prrr_zx*s_3_prrr);
-        /* (prrr-N56) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y;
+        const real d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y;
+        /* (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prrr_xx = d_alpha_3_prrr_zx*h_3_prrr_y - d_G_prrr_xx;
-        const real d_c_prrr_xy = d_alpha_3_prrr_zy*h_3_prrr_y - d_G_prrr_xy;
-        /* (prrr-N58) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_prrr_t = d_G_prrr_t + d_c_prrr_xx + d_alpha_3_prrr_zy*h_3_prrr_x;
+        const real d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy;
+        /* (prrr-N57) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx -
+            d_c_prrr_yy;
         const real Q_prrr_t_2 = R(0.5)*Q_prrr_t;
-        const real Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x -
-            axis_y_prrr_axes3_in_base_y*d_c_prrr_xy;
-        const real Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y +
+        const real Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y +
             axis_y_prrr_axes3_in_base_x*d_c_prrr_xy;
-        const real Q_prrr_t_5 = 2*Q_prrr_t_3*axis_y_prrr_axes3_in_base_x - d_c_prrr_xx;
-        const real Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_y +
-            Q_prrr_t_4*axis_y_prrr_axes3_in_base_x;
-        const real Q_prrr_t_7 = 2*Q_prrr_t_4*axis_y_prrr_axes3_in_base_y - d_c_prrr_xx;
+        const real Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x -
+            axis_y_prrr_axes3_in_base_y*d_c_prrr_xy;
+        const real Q_prrr_t_5 = d_c_prrr_yy + 2*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y;
+        const real Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_x +
+            Q_prrr_t_4*axis_y_prrr_axes3_in_base_y;
+        const real Q_prrr_t_7 = d_c_prrr_yy + 2*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_prrr_t_5*q_prrr_in_base_y - Q_prrr_t_6*q_prrr_in_base_x;
-        const real M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y - Q_prrr_t_7*q_prrr_in_base_x;
+        const real M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x;
+        const real M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_prrr_in_base_y - M_ta_t_2*q_prrr_in_base_x;
-        /* (prrr-N7) remainder without the acceleration in: acceleration of the reference point of link 2,
+        const real M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x;
+        /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr;
         const real g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr;
@@ -900,8 +938,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         /* (prrr-V13) centripetal tensor of link 3 */
         const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
         /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr;
+        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
+            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
         /* (prrr-A1) centripetal acceleration of the connection point */
         const real u_1_prrr_t = S_dot_prrr_t_2*omega_z;
         const real u_1_prrr_t_2 = S_dot_prrr_t*omega_z;
@@ -912,113 +950,101 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         /* (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x;
-        const real rel_prrr_o_y = u_1_prrr_tip_y +
-            prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr;
+        const real rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr;
         /* (prrr-A11) remainder without the acceleration in: acceleration of joint 2 */
         const real qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x;
-        /* (prrr-N35) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o -
             g_r1_y*h_2_prrr_x;
-        /* (prrr-N16) remainder without the acceleration in: acceleration of the reference point of link
+        /* (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x;
         const real acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr;
-        /* (prrr-A24) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (prrr-A21) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_prrr_o_z = inv_prrr_platform_joint_offset_x*(rel_prrr_o_y +
             qdd_2_prrr_o*r_2_prrr_r0_x) - qdd_2_prrr_o;
-        /* (prrr-N25) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_prrr_o_z = J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x -
             acc_3_prrr_o_x*h_3_prrr_y;
         /* (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z;
-        /* (prrr-N54) remainder without the acceleration in: force at the connection point that balances
+        /* (prrr-N53) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z;
         const real G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z);
-        /* (prrr-N57) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y -
             G_prrr_o_t_2;
         const real c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x;
-        /* (prrr-N59) velocity and gravity terms of the leg force */
+        /* (prrr-N58) velocity and gravity terms of the leg force */
         const real U_prrr_in_base_x = -axis_y_prrr_axes3_in_base_x*c_prrr_o_y -
             axis_y_prrr_axes3_in_base_y*c_prrr_o_x;
         const real U_prrr_in_base_y = axis_y_prrr_axes3_in_base_x*c_prrr_o_x -
             axis_y_prrr_axes3_in_base_y*c_prrr_o_y;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-N14) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x -
             g_r1_x*prrr_link2_mass;
         const real f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass -
             h_2_prrr_x*qdd_2_prrr_o;
-        /* (prrr-N46) remainder without the acceleration in: inertia force of the links from 1 outwards,
+        /* (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr;
-        /* (prrr-N64) remainder without the acceleration in: inertia and weight of the leg along the extra
+        /* (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
         const real P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x +
             G_prrr_o_t_2*axis_y_prrr_axes3_r1_y;
         const real P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t;
-        /* (prrr-N49) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_prrr_x = c_2_prrr*h_2_prrr_y*w_2_prrr_t +
-            h_2_prrr_x*s_2_prrr*w_2_prrr_t;
-        const real d_Gamma_1_prrr_y = -c_2_prrr*h_2_prrr_y*w_2_prrr_t_2 -
-            h_2_prrr_x*s_2_prrr*w_2_prrr_t_2;
-        /* (prrr-N63) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        /* (prrr-N20) force that accelerates joint 2, per unit */
+        const real P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr;
+        /* (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
-        const real d_P_1_prrr_x = c_3_prrr*d_Gamma_1_prrr_x - axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
-            d_Gamma_1_prrr_y*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*d_mu_3_prrr_zx*inv_prrr_platform_joint_offset_x;
-        const real d_P_1_prrr_y = c_3_prrr*d_Gamma_1_prrr_y + d_Gamma_1_prrr_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*d_G_prrr_t - axis_y_prrr_axes3_r1_y*d_G_prrr_xy;
-        const real d_P_1_prrr_in_base_x = axis_y_prrr_axes3_in_base_x*d_P_1_prrr_y +
-            axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x;
-        const real d_P_1_prrr_in_base_y = axis_y_prrr_axes3_in_base_y*d_P_1_prrr_y -
-            axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x;
+        const real d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t +
+            axis_y_prrr_axes3_r1_y*d_G_prrr_xy;
+        const real d_P_1_prrr_x = -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y -
+            axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
+            axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x;
+        const real d_P_1_prrr_in_base_x = axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x -
+            axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t;
+        const real d_P_1_prrr_in_base_y = -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x -
+            axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t;
         /* (M8) coupling of extra joint 1 with the rotation of the platform */
         const real M_ya_1_prrr_z = d_P_1_prrr_in_base_y*q_prrr_in_base_x -
             d_P_1_prrr_in_base_x*q_prrr_in_base_y;
         /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
         const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-N13) coefficient of the acceleration in: inertia force of link 2 less its weight */
-        const real d0_f_2_prrr_x = c_2_prrr*prrr_link2_mass - d1_qdd_2_prrr*h_2_prrr_y;
-        const real d0_f_2_prrr_y = d1_qdd_2_prrr*h_2_prrr_x - prrr_link2_mass*s_2_prrr;
-        /* (prrr-N45) coefficient of the acceleration in: inertia force of the links from 1 outwards, the
-           last link left out */
-        const real d0_T_1_prrr_x = prrr_link1_mass + c_2_prrr*d0_f_2_prrr_x -
-            d0_f_2_prrr_y*s_2_prrr;
-        /* (prrr-N34) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d1_mu_2_prrr_z = J_2_prrr_zz*d1_qdd_2_prrr - c_2_prrr*h_2_prrr_y -
-            h_2_prrr_x*s_2_prrr;
-        /* (prrr-A23) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d1_alpha_3_prrr_z = d1_qdd_2_prrr -
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
+        /* (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_2_prrr_t =
+            J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
             d1_qdd_2_prrr*r_2_prrr_r0_x);
-        /* (prrr-N24) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d1_mu_3_prrr_t = J_3_prrr_zz*d1_alpha_3_prrr_z;
-        /* (prrr-N38) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d1_N_2_prrr_z = d1_mu_2_prrr_z + d1_mu_3_prrr_t;
-        /* (prrr-N53) coefficient of the acceleration in: force at the connection point that balances the
+        const real d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr -
+            d0_Gamma_2_prrr_t;
+        /* (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t;
+        /* (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d1_G_prrr_t = d1_mu_3_prrr_t*inv_prrr_platform_joint_offset_x;
-        /* (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x;
+        /* (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr;
+        /* (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
-        const real d0_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d1_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d1_G_prrr_t*r_2_prrr_r0_x - d1_N_2_prrr_z);
-        const real d0_P_1_prrr = d0_T_1_prrr_x - d0_P_1_prrr_t;
+        const real d0_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
+            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x -
+            d0_Gamma_2_prrr);
+        const real d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t;
         /* (prrr-V5) reciprocal vector 1 */
-        const real w_2_prrr_t_3 = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y;
-        const real w_2_prrr_t_4 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
+        const real w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y;
+        const real w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_4 + q_prrr_in_base_y*w_2_prrr_t_3;
+        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
         o->sum[0][k] = Q_prrr_t_5;  /* total_prrr_xx */
         o->sum[1][k] = Q_prrr_t_6;  /* total_prrr_xy */
         o->sum[2][k] = Q_prrr_t_7;  /* total_prrr_yy */
@@ -1037,8 +1063,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         o->entry[6][k] = M_ya_1_prrr_z;
         o->entry[7][k] = d0_P_1_prrr;
         o->entry[8][k] = 1;
-        o->entry[9][k] = -w_2_prrr_t_3;
-        o->entry[10][k] = w_2_prrr_t_4;
+        o->entry[9][k] = -w_2_prrr_t;
+        o->entry[10][k] = w_2_prrr_t_2;
         o->entry[11][k] = H_a_2_prrr_z;
         o->entry[12][k] = d1_qdd_2_prrr;
         o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
@@ -1084,9 +1110,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_z = s->omega_z[j];
         const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real g_r0_x_2 = m->g_r0_x_2[i];
         const real g_r0_y_2 = m->g_r0_y_2[i];
         const real h_1_rrr_x = m->h_1_rrr_x[i];
@@ -1157,47 +1188,36 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_6*q_rrr_in_base_x - Q_rrr_t_5*q_rrr_in_base_y;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
@@ -1216,11 +1236,13 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -1231,10 +1253,10 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o -
             g_r1_y_2*h_1_rrr_x;
@@ -1242,25 +1264,25 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -1268,10 +1290,10 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
         /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3;
+        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -1281,8 +1303,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         o->sum[6][k] = U_rrr_in_base_x;  /* total_rrr_x */
         o->sum[7][k] = U_rrr_in_base_y;  /* total_rrr_y */
         o->sum[8][k] = Z_a_t_2;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t_3;
-        o->entry[1][k] = w_1_rrr_t_4;
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
         o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
             unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
@@ -1332,14 +1354,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real J_star_t_10 = m->J_star_t_10;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_prrr_xx + total_rrr_xx;
+        const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
         const real M_tt_xy = total_prrr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_prrr_yy + total_rrr_yy;
+        const real M_tt_yy = m_star - total_prrr_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_prrr_xz;
+        const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prrr_zz - J_star_t_10 - total_rrr_zz;
+        const real M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_prrr_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_prrr_y + total_rrr_y;
@@ -1427,7 +1449,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 16, w, code, H);
 }
 
-/* ---- M: 315 mul, 202 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 246 mul, 170 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
         h_star_in_base_y[LANES], sum[12][LANES];
@@ -1474,14 +1496,19 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_2_prrr_zz = m->J_2_prrr_zz[i];
         const real J_3_prrr_zz = m->J_3_prrr_zz[i];
+        const real Jc_2_prrr_zz = m->Jc_2_prrr_zz[i];
         const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
         const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
+        const real P_c1_prrr_t = m->P_c1_prrr_t[i];
         const real branch_2_prrr = m->branch_2_prrr[i];
+        const real d_G_prrr_t = m->d_G_prrr_t[i];
+        const real d_Gamma_2_prrr_t = m->d_Gamma_2_prrr_t[i];
+        const real d_Gamma_2_prrr_y = m->d_Gamma_2_prrr_y[i];
+        const real d_c_prrr_yy = m->d_c_prrr_yy[i];
+        const real d_phi_3_prrr_t = m->d_phi_3_prrr_t[i];
         const real h_2_prrr_x = m->h_2_prrr_x[i];
         const real h_2_prrr_y = m->h_2_prrr_y[i];
-        const real h_3_prrr_x = m->h_3_prrr_x[i];
         const real h_3_prrr_y = m->h_3_prrr_y[i];
         const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
         const real inv_prrr_platform_joint_offset_x = m->inv_prrr_platform_joint_offset_x[i];
@@ -1493,8 +1520,6 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
         const real prrr_base_point_x = m->prrr_base_point_x[i];
         const real prrr_base_point_y = m->prrr_base_point_y[i];
         const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
-        const real prrr_link1_mass = m->prrr_link1_mass[i];
-        const real prrr_link2_mass = m->prrr_link2_mass[i];
         const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
@@ -1550,102 +1575,81 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
         const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        const real w_2_prrr_t = c_3_prrr*inv_r_2_prrr_r0_y;
-        const real w_2_prrr_t_2 = inv_r_2_prrr_r0_y*s_3_prrr;
         /* (prrr-V6) reciprocal vector 2 */
         const real w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x;
-        /* (prrr-A22) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d_alpha_3_prrr_zx = w_3_prrr_t - c_3_prrr*w_2_prrr_t - s_3_prrr*w_2_prrr_t_2;
-        const real d_alpha_3_prrr_zy = inv_prrr_platform_joint_offset_x + c_3_prrr*w_2_prrr_t_2 -
-            s_3_prrr*w_2_prrr_t;
-        /* (prrr-N23) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d_mu_3_prrr_zx = J_3_prrr_zz*d_alpha_3_prrr_zx - h_3_prrr_y;
-        const real d_mu_3_prrr_zy = h_3_prrr_x + J_3_prrr_zz*d_alpha_3_prrr_zy;
-        /* (prrr-N37) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d_N_2_prrr_zx = c_3_prrr*d_mu_3_prrr_zx + d_mu_3_prrr_zy*s_3_prrr -
-            J_2_prrr_zz*w_2_prrr_t;
-        const real d_N_2_prrr_zy = J_2_prrr_zz*w_2_prrr_t_2 + c_3_prrr*d_mu_3_prrr_zy -
-            d_mu_3_prrr_zx*s_3_prrr;
+        /* (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x;
+        const real d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz -
+            d_Gamma_2_prrr_t_2);
+        /* (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz -
+            d_Gamma_2_prrr_t_2);
         /* (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_prrr_t = d_mu_3_prrr_zy*inv_prrr_platform_joint_offset_x;
-        const real d_G_prrr_xx = d_mu_3_prrr_zx*w_3_prrr_t -
-            inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zx - d_N_2_prrr_zy*s_3_prrr);
-        const real d_G_prrr_xy = d_mu_3_prrr_zy*w_3_prrr_t -
-            inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zy + d_N_2_prrr_zx*s_3_prrr);
-        /* (prrr-N56) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y;
+        const real d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y;
+        /* (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_prrr_xx = d_alpha_3_prrr_zx*h_3_prrr_y - d_G_prrr_xx;
-        const real d_c_prrr_xy = d_alpha_3_prrr_zy*h_3_prrr_y - d_G_prrr_xy;
-        /* (prrr-N58) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_prrr_t = d_G_prrr_t + d_c_prrr_xx + d_alpha_3_prrr_zy*h_3_prrr_x;
+        const real d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy;
+        /* (prrr-N57) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx -
+            d_c_prrr_yy;
         const real Q_prrr_t_2 = R(0.5)*Q_prrr_t;
-        const real Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x -
-            axis_y_prrr_axes3_in_base_y*d_c_prrr_xy;
-        const real Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y +
+        const real Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y +
             axis_y_prrr_axes3_in_base_x*d_c_prrr_xy;
-        const real Q_prrr_t_5 = 2*Q_prrr_t_3*axis_y_prrr_axes3_in_base_x - d_c_prrr_xx;
-        const real Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_y +
-            Q_prrr_t_4*axis_y_prrr_axes3_in_base_x;
-        const real Q_prrr_t_7 = 2*Q_prrr_t_4*axis_y_prrr_axes3_in_base_y - d_c_prrr_xx;
+        const real Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x -
+            axis_y_prrr_axes3_in_base_y*d_c_prrr_xy;
+        const real Q_prrr_t_5 = d_c_prrr_yy + 2*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y;
+        const real Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_x +
+            Q_prrr_t_4*axis_y_prrr_axes3_in_base_y;
+        const real Q_prrr_t_7 = d_c_prrr_yy + 2*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_prrr_t_5*q_prrr_in_base_y - Q_prrr_t_6*q_prrr_in_base_x;
-        const real M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y - Q_prrr_t_7*q_prrr_in_base_x;
+        const real M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x;
+        const real M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_prrr_in_base_y - M_ta_t_2*q_prrr_in_base_x;
-        /* (prrr-N49) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_prrr_x = c_2_prrr*h_2_prrr_y*w_2_prrr_t +
-            h_2_prrr_x*s_2_prrr*w_2_prrr_t;
-        const real d_Gamma_1_prrr_y = -c_2_prrr*h_2_prrr_y*w_2_prrr_t_2 -
-            h_2_prrr_x*s_2_prrr*w_2_prrr_t_2;
-        /* (prrr-N63) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x;
+        /* (prrr-N20) force that accelerates joint 2, per unit */
+        const real P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr;
+        /* (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
-        const real d_P_1_prrr_x = c_3_prrr*d_Gamma_1_prrr_x - axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
-            d_Gamma_1_prrr_y*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*d_mu_3_prrr_zx*inv_prrr_platform_joint_offset_x;
-        const real d_P_1_prrr_y = c_3_prrr*d_Gamma_1_prrr_y + d_Gamma_1_prrr_x*s_3_prrr -
-            axis_y_prrr_axes3_r1_x*d_G_prrr_t - axis_y_prrr_axes3_r1_y*d_G_prrr_xy;
-        const real d_P_1_prrr_in_base_x = axis_y_prrr_axes3_in_base_x*d_P_1_prrr_y +
-            axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x;
-        const real d_P_1_prrr_in_base_y = axis_y_prrr_axes3_in_base_y*d_P_1_prrr_y -
-            axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x;
+        const real d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t +
+            axis_y_prrr_axes3_r1_y*d_G_prrr_xy;
+        const real d_P_1_prrr_x = -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y -
+            axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
+            axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x;
+        const real d_P_1_prrr_in_base_x = axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x -
+            axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t;
+        const real d_P_1_prrr_in_base_y = -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x -
+            axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t;
         /* (M8) coupling of extra joint 1 with the rotation of the platform */
         const real M_ya_1_prrr_z = d_P_1_prrr_in_base_y*q_prrr_in_base_x -
             d_P_1_prrr_in_base_x*q_prrr_in_base_y;
         /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
         const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
-        /* (prrr-N13) coefficient of the acceleration in: inertia force of link 2 less its weight */
-        const real d0_f_2_prrr_x = c_2_prrr*prrr_link2_mass - d1_qdd_2_prrr*h_2_prrr_y;
-        const real d0_f_2_prrr_y = d1_qdd_2_prrr*h_2_prrr_x - prrr_link2_mass*s_2_prrr;
-        /* (prrr-N45) coefficient of the acceleration in: inertia force of the links from 1 outwards, the
-           last link left out */
-        const real d0_T_1_prrr_x = prrr_link1_mass + c_2_prrr*d0_f_2_prrr_x -
-            d0_f_2_prrr_y*s_2_prrr;
-        /* (prrr-N34) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d1_mu_2_prrr_z = J_2_prrr_zz*d1_qdd_2_prrr - c_2_prrr*h_2_prrr_y -
-            h_2_prrr_x*s_2_prrr;
-        /* (prrr-A23) coefficient of the acceleration in: angular acceleration of link 3 */
-        const real d1_alpha_3_prrr_z = d1_qdd_2_prrr -
-            inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
+        /* (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_2_prrr_t =
+            J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
             d1_qdd_2_prrr*r_2_prrr_r0_x);
-        /* (prrr-N24) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real d1_mu_3_prrr_t = J_3_prrr_zz*d1_alpha_3_prrr_z;
-        /* (prrr-N38) coefficient of the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real d1_N_2_prrr_z = d1_mu_2_prrr_z + d1_mu_3_prrr_t;
-        /* (prrr-N53) coefficient of the acceleration in: force at the connection point that balances the
+        const real d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr -
+            d0_Gamma_2_prrr_t;
+        /* (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia
+           and weight */
+        const real d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t;
+        /* (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d1_G_prrr_t = d1_mu_3_prrr_t*inv_prrr_platform_joint_offset_x;
-        /* (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra
+        const real d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x;
+        /* (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr;
+        /* (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
-        const real d0_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d1_G_prrr_t +
-            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d1_G_prrr_t*r_2_prrr_r0_x - d1_N_2_prrr_z);
-        const real d0_P_1_prrr = d0_T_1_prrr_x - d0_P_1_prrr_t;
+        const real d0_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
+            axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x -
+            d0_Gamma_2_prrr);
+        const real d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t;
         o->sum[0][k] = Q_prrr_t_5;  /* total_prrr_xx */
         o->sum[1][k] = Q_prrr_t_6;  /* total_prrr_xy */
         o->sum[2][k] = Q_prrr_t_7;  /* total_prrr_yy */
@@ -1690,12 +1694,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real h_2_rrr_y = m->h_2_rrr_y[i];
         const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -1746,6 +1753,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
         const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
         const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr = 1/rho2_1_rrr;
@@ -1760,48 +1768,36 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr_t_6*q_rrr_in_base_x - Q_rrr_t_5*q_rrr_in_base_y;
-        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
@@ -1844,14 +1840,14 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real J_star_t_10 = m->J_star_t_10;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_prrr_xx + total_rrr_xx;
+        const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
         const real M_tt_xy = total_prrr_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_prrr_yy + total_rrr_yy;
+        const real M_tt_yy = m_star - total_prrr_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = total_rrr_xz - h_star_in_base_y - total_prrr_xz;
+        const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prrr_zz - J_star_t_10 - total_rrr_zz;
+        const real M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_xy;
@@ -1923,7 +1919,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 16, w, code, M);
 }
 
-/* ---- Z: 323 mul, 198 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 316 mul, 198 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
@@ -2072,7 +2068,7 @@ INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real axis_y_prrr_axes3_in_base_y = axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
             axis_y_prrr_axes3_r1_y*prrr_base_frame_yx;
         const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
-        /* (prrr-N7) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr;
         const real g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr;
@@ -2096,8 +2092,8 @@ INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (prrr-V13) centripetal tensor of link 3 */
         const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
         /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr;
+        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
+            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
         /* (prrr-A1) centripetal acceleration of the connection point */
         const real u_1_prrr_t = S_dot_prrr_t_2*omega_z;
         const real u_1_prrr_t_2 = S_dot_prrr_t*omega_z;
@@ -2108,53 +2104,52 @@ INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x;
-        const real rel_prrr_o_y = u_1_prrr_tip_y +
-            prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr;
+        const real rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr;
         /* (prrr-A11) remainder without the acceleration in: acceleration of joint 2 */
         const real qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x;
-        /* (prrr-N35) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o -
             g_r1_y*h_2_prrr_x;
-        /* (prrr-N16) remainder without the acceleration in: acceleration of the reference point of link
+        /* (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x;
         const real acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr;
-        /* (prrr-A24) remainder without the acceleration in: angular acceleration of link 3 */
+        /* (prrr-A21) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_prrr_o_z = inv_prrr_platform_joint_offset_x*(rel_prrr_o_y +
             qdd_2_prrr_o*r_2_prrr_r0_x) - qdd_2_prrr_o;
-        /* (prrr-N25) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with
            link 3, about their reference points */
         const real mu_3_prrr_o_z = J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x -
             acc_3_prrr_o_x*h_3_prrr_y;
         /* (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2
            outwards, the force at the connection point left out */
         const real N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z;
-        /* (prrr-N54) remainder without the acceleration in: force at the connection point that balances
+        /* (prrr-N53) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z;
         const real G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z);
-        /* (prrr-N57) remainder without the acceleration in: leg force on the platform without actuation
+        /* (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y -
             G_prrr_o_t_2;
         const real c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x;
-        /* (prrr-N59) velocity and gravity terms of the leg force */
+        /* (prrr-N58) velocity and gravity terms of the leg force */
         const real U_prrr_in_base_x = -axis_y_prrr_axes3_in_base_x*c_prrr_o_y -
             axis_y_prrr_axes3_in_base_y*c_prrr_o_x;
         const real U_prrr_in_base_y = axis_y_prrr_axes3_in_base_x*c_prrr_o_x -
             axis_y_prrr_axes3_in_base_y*c_prrr_o_y;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y;
-        /* (prrr-N14) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x -
             g_r1_x*prrr_link2_mass;
         const real f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass -
             h_2_prrr_x*qdd_2_prrr_o;
-        /* (prrr-N46) remainder without the acceleration in: inertia force of the links from 1 outwards,
+        /* (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr;
-        /* (prrr-N64) remainder without the acceleration in: inertia and weight of the leg along the extra
+        /* (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 1 */
         const real P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x +
             G_prrr_o_t_2*axis_y_prrr_axes3_r1_y;
@@ -2282,11 +2277,13 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -2297,10 +2294,10 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o -
             g_r1_y_2*h_1_rrr_x;
@@ -2308,25 +2305,25 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -2707,7 +2704,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 16, w, code, H);
 }
 
-/* ---- required: 352 mul, 223 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 345 mul, 223 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
@@ -2901,8 +2898,8 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         /* (prrr-V13) centripetal tensor of link 3 */
         const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
         /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr;
+        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
+            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
         /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
         const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
         /* (prrr-V5) reciprocal vector 1 */
@@ -2923,35 +2920,35 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         /* (prrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x -
             axis_y_prrr_axes3_r1_y*ydd_1_prrr;
-        const real rel_prrr_y = S_ddot_prrr_tip_y +
-            prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr - axis_y_prrr_axes3_r1_x*ydd_1_prrr;
+        const real rel_prrr_y = S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
+            axis_y_prrr_axes3_r1_x*ydd_1_prrr;
         /* (prrr-A9) acceleration of joint 2 */
         const real qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x;
-        /* (prrr-N15) acceleration of the reference point of link 3, less gravity */
+        /* (prrr-N11) acceleration of the reference point of link 3, less gravity */
         const real acc_3_prrr_x = S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
             axis_y_prrr_axes3_in_base_y*gravity_x;
         const real acc_3_prrr_y = S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
             axis_y_prrr_axes3_in_base_y*gravity_y;
-        /* (prrr-N6) acceleration of the reference point of link 2, less gravity */
+        /* (prrr-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr;
         const real acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr;
-        /* (prrr-N32) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prrr-N36) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr -
             acc_2_prrr_x*h_2_prrr_y;
-        /* (prrr-A21) angular acceleration of link 3 */
+        /* (prrr-A19) angular acceleration of link 3 */
         const real alpha_3_prrr_z = inv_prrr_platform_joint_offset_x*(rel_prrr_y +
             qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr;
-        /* (prrr-N22) inertia moment of the links that turn with link 3, about their reference points */
+        /* (prrr-N28) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_prrr_z = J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x -
             acc_3_prrr_x*h_3_prrr_y;
-        /* (prrr-N36) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z;
-        /* (prrr-N51) force at the connection point that balances the leg's inertia and weight along all
+        /* (prrr-N50) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z;
         const real G_prrr_t_2 = inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z);
-        /* (prrr-N55) leg force on the platform without actuation and without the mass at the connection
+        /* (prrr-N54) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_prrr_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y - G_prrr_t_2;
         const real c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x;
@@ -2963,7 +2960,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real R_a_t = c_prrr_in_base_y*q_prrr_in_base_x - c_prrr_in_base_x*q_prrr_in_base_y;
         /* (prrr-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_prrr_x = ydd_1_prrr - g_r0_x;
-        /* (prrr-N12) inertia force of link 2 less its weight */
+        /* (prrr-N9) inertia force of link 2 less its weight */
         const real f_2_prrr_x = acc_2_prrr_x*prrr_link2_mass + h_2_prrr_y*qdd_2_prrr -
             W_2_prrr_t*h_2_prrr_x;
         const real f_2_prrr_y = acc_2_prrr_y*prrr_link2_mass - W_2_prrr_t*h_2_prrr_y -
@@ -2971,7 +2968,7 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         /* (prrr-N44) inertia force of the links from 1 outwards, the last link left out */
         const real T_1_prrr_x = acc_1_prrr_x*prrr_link1_mass + c_2_prrr*f_2_prrr_x -
             f_2_prrr_y*s_2_prrr;
-        /* (prrr-N61) inertia and weight of the leg along the extra freedom of joint 1 */
+        /* (prrr-N60) inertia and weight of the leg along the extra freedom of joint 1 */
         const real P_1_prrr_t = G_prrr_t*axis_y_prrr_axes3_r1_x +
             G_prrr_t_2*axis_y_prrr_axes3_r1_y;
         const real P_1_prrr = T_1_prrr_x - P_1_prrr_t;
@@ -3110,11 +3107,13 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -3132,7 +3131,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -3140,22 +3139,22 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
             J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
@@ -3803,7 +3802,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 7, w, code, rates);
 }
 
-/* ---- joint_accelerations: 223 mul, 122 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 220 mul, 122 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -3956,9 +3955,11 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t leg, size_t 
         const real omega_3_prrr_z =
             inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
             S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
+        /* (prrr-V11) centripetal tensor of link 2 */
+        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
         /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_prrr_x = -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr;
+            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
         /* (prrr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y;
         const real a_p_prrr_y = t_ddot_y + alpha_z*q_prrr_in_base_x;
@@ -3969,8 +3970,8 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t leg, size_t 
         const real rel_prrr_x = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_y - bias_prrr_x -
             S_ddot_prrr_y*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr;
         const real rel_prrr_y = S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x +
-            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y +
-            prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr - axis_y_prrr_axes3_r1_x*ydd_1_prrr;
+            S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
+            axis_y_prrr_axes3_r1_x*ydd_1_prrr;
         /* (prrr-A9) acceleration of joint 2 */
         const real qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x;
         const real qdd_3_prrr = inv_prrr_platform_joint_offset_x*(rel_prrr_y +
@@ -4092,9 +4093,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
         const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
@@ -4105,8 +4108,7 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real rel_rrr_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
         const real rel_rrr_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
@@ -4176,7 +4178,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 7, w, code, accelerations);
 }
 
-/* ---- legs: 315 mul, 187 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 309 mul, 187 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -4339,11 +4341,13 @@ INLINE void legs_legs_prrr(const prepared *m, size_t leg, size_t legs, const leg
         const real omega_3_prrr_z =
             inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
             S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr;
+        /* (prrr-V11) centripetal tensor of link 2 */
+        const real W_2_prrr_t = qd_2_prrr*qd_2_prrr;
         /* (prrr-V13) centripetal tensor of link 3 */
         const real W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z;
         /* (prrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_prrr_x = -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-            c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr;
+        const real bias_prrr_x = -W_3_prrr_t*prrr_platform_joint_offset_x -
+            W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x;
         /* (prrr-V5) reciprocal vector 1 */
         const real w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y;
         const real w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
@@ -4360,39 +4364,39 @@ INLINE void legs_legs_prrr(const prepared *m, size_t leg, size_t legs, const leg
         /* (prrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x -
             axis_y_prrr_axes3_r1_y*ydd_1_prrr;
-        const real rel_prrr_y = S_ddot_prrr_tip_y +
-            prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr - axis_y_prrr_axes3_r1_x*ydd_1_prrr;
+        const real rel_prrr_y = S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
+            axis_y_prrr_axes3_r1_x*ydd_1_prrr;
         /* (prrr-A9) acceleration of joint 2 */
         const real qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x;
-        /* (prrr-N15) acceleration of the reference point of link 3, less gravity */
+        /* (prrr-N11) acceleration of the reference point of link 3, less gravity */
         const real acc_3_prrr_x = S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
             axis_y_prrr_axes3_in_base_y*gravity_x;
         const real acc_3_prrr_y = S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
             axis_y_prrr_axes3_in_base_y*gravity_y;
-        /* (prrr-N6) acceleration of the reference point of link 2, less gravity */
+        /* (prrr-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr;
         const real acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr;
-        /* (prrr-N32) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prrr-N36) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr -
             acc_2_prrr_x*h_2_prrr_y;
-        /* (prrr-A21) angular acceleration of link 3 */
+        /* (prrr-A19) angular acceleration of link 3 */
         const real alpha_3_prrr_z = inv_prrr_platform_joint_offset_x*(rel_prrr_y +
             qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr;
-        /* (prrr-N22) inertia moment of the links that turn with link 3, about their reference points */
+        /* (prrr-N28) inertia moment of the links that turn with link 3, about their reference points */
         const real mu_3_prrr_z = J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x -
             acc_3_prrr_x*h_3_prrr_y;
-        /* (prrr-N36) moment about joint 2 of the links from 2 outwards, the force at the connection point
+        /* (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
         const real N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z;
-        /* (prrr-N51) force at the connection point that balances the leg's inertia and weight along all
+        /* (prrr-N50) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z;
-        /* (prrr-N55) leg force on the platform without actuation and without the mass at the connection
+        /* (prrr-N54) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_prrr_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y -
             inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z);
         const real c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x;
-        /* (prrr-N60) leg force on the platform without actuation, the last link's mass included */
+        /* (prrr-N59) leg force on the platform without actuation, the last link's mass included */
         const real c_true_prrr_x = c_prrr_x - acc_3_prrr_x*prrr_link3_mass;
         const real c_true_prrr_y = c_prrr_y - acc_3_prrr_y*prrr_link3_mass;
         const real c_true_prrr_in_base_x = axis_y_prrr_axes3_in_base_x*c_true_prrr_y +
@@ -4528,11 +4532,13 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -4548,7 +4554,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -4556,27 +4562,27 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) -
             J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
         const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
         const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
         const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
@@ -4753,16 +4759,17 @@ INLINE void potential_legs_prrr(const prepared *m, size_t leg, size_t legs, cons
         const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
         /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
         const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
-        /* (prrr-N23) coefficient of the acceleration in: inertia moment of the links that turn with link
-           3, about their reference points */
-        const real _x = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr;
-        const real _y = -c_3_prrr*h_3_prrr_x - h_3_prrr_y*s_3_prrr;
         /* (V1) potential energy */
         const real potential_t_5 = b_prrr_r0_x + y_1_extra_prrr;
+        /* (prrr-G6) first moment of link 3 about the connection point */
+        const real h_3_prrr_r0_x = c_3_prrr*h_3_prrr_x + h_3_prrr_y*s_3_prrr;
+        const real h_3_prrr_r0_y = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr;
+        /* (V1) potential energy */
         const real potential_t_6 = g_r0_x*(h_1_prrr_y + c_2_prrr*h_2_prrr_x +
-            potential_t_5*prrr_link1_mass + potential_t_5*prrr_link2_mass - _x*s_2_prrr -
-            _y*c_2_prrr - h_2_prrr_y*s_2_prrr) + g_r0_y*(potential_t + potential_t_2 + _x*c_2_prrr
-            + c_2_prrr*h_2_prrr_y + h_2_prrr_x*s_2_prrr - h_1_prrr_x - _y*s_2_prrr);
+            c_2_prrr*h_3_prrr_r0_x + potential_t_5*prrr_link1_mass + potential_t_5*prrr_link2_mass
+            - h_2_prrr_y*s_2_prrr - h_3_prrr_r0_y*s_2_prrr) + g_r0_y*(potential_t + potential_t_2
+            + c_2_prrr*h_2_prrr_y + c_2_prrr*h_3_prrr_r0_y + h_2_prrr_x*s_2_prrr +
+            h_3_prrr_r0_x*s_2_prrr - h_1_prrr_x);
         o->sum[0][k] = potential_t_6;  /* total_prrr */
         o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
         o->unreachable[k] = unless(disc_2_prrr >= 0);

@@ -118,19 +118,22 @@ typedef struct {
     planar_redundant_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x,
             h_star_y, m_star;
     /* legs of type prrr */
-    planar_redundant_real J_2_prrr_zz[1], J_3_prrr_zz[1], Kd_2_prrr_t_2[1], Kd_2_prrr_t_3[1],
-            b_prrr_r0_x[1], branch_2_prrr[1], f_1_prrr_o_x[1], g_r0_x[1], g_r0_y[1], h_1_prrr_x[1],
-            h_1_prrr_y[1], h_2_prrr_x[1], h_2_prrr_y[1], h_3_prrr_x[1], h_3_prrr_y[1],
-            inv_Kd_2_prrr_t[1], inv_prrr_platform_joint_offset_x[1], inv_uu_3_prrr_t[1],
-            potential_t[1], potential_t_2[1], prrr_base_frame_xx[1], prrr_base_frame_xy[1],
-            prrr_base_frame_yx[1], prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1],
+    planar_redundant_real J_2_prrr_zz[1], J_3_prrr_zz[1], Jc_2_prrr_zz[1], Kd_2_prrr_t_2[1],
+            Kd_2_prrr_t_3[1], P_c1_prrr_t[1], b_prrr_r0_x[1], branch_2_prrr[1], d_G_prrr_t[1],
+            d_Gamma_2_prrr_t[1], d_Gamma_2_prrr_y[1], d_c_prrr_yy[1], d_phi_3_prrr_t[1],
+            f_1_prrr_o_x[1], g_r0_x[1], g_r0_y[1], h_1_prrr_x[1], h_1_prrr_y[1], h_2_prrr_x[1],
+            h_2_prrr_y[1], h_3_prrr_x[1], h_3_prrr_y[1], inv_Kd_2_prrr_t[1],
+            inv_prrr_platform_joint_offset_x[1], inv_uu_3_prrr_t[1], potential_t[1], potential_t_2[1],
+            prrr_base_frame_xx[1], prrr_base_frame_xy[1], prrr_base_frame_yx[1],
+            prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1],
             prrr_joint3_offset_x[1], prrr_link1_mass[1], prrr_link2_mass[1], prrr_link3_mass[1],
             prrr_platform_joint_offset_x[1], prrr_platform_point_x[1], prrr_platform_point_y[1],
             rho2_2_prrr_t[1], size_prrr[1];
     /* legs of type rrr */
-    planar_redundant_real J_1_rrr_zz[2], J_2_rrr_zz[2], Kd_1_rrr_t_2[2], Kd_1_rrr_t_3[2],
-            b_rrr_r0_x[2], b_rrr_r0_y[2], branch_1_rrr[2], g_r0_x_2[2], g_r0_y_2[2], h_1_rrr_x[2],
-            h_1_rrr_y[2], h_2_rrr_x[2], h_2_rrr_y[2], inv_Kd_1_rrr_t_5[2],
+    planar_redundant_real J_1_rrr_zz[2], J_2_rrr_zz[2], Jc_1_rrr_zz[2], Kd_1_rrr_t_2[2],
+            Kd_1_rrr_t_3[2], b_rrr_r0_x[2], b_rrr_r0_y[2], branch_1_rrr[2], d_Gamma_1_rrr_t[2],
+            d_Gamma_1_rrr_y[2], d_c_rrr_yy[2], d_phi_2_rrr_t[2], g_r0_x_2[2], g_r0_y_2[2],
+            h_1_rrr_x[2], h_1_rrr_y[2], h_2_rrr_x[2], h_2_rrr_y[2], inv_Kd_1_rrr_t_5[2],
             inv_rrr_platform_joint_offset_x[2], inv_uu_2_rrr_t[2], rho2_1_rrr_t[2],
             rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2],
             rrr_base_point_x[2], rrr_base_point_y[2], rrr_joint2_offset_x[2], rrr_link1_mass[2],
@@ -147,13 +150,13 @@ extern const planar_redundant_real planar_redundant_HOME_Q[PLANAR_REDUNDANT_NJ];
    model is all NaN. */
 int planar_redundant_prepare(const planar_redundant_params *params, planar_redundant_model *model);
 
-/* Inertia matrix M. 315 mul, 202 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 246 mul, 170 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int planar_redundant_M(const planar_redundant_model *model, const planar_redundant_real *X,
     planar_redundant_real *M);
 size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *M, int *status);
 
-/* Velocity and gravity terms Z. 323 mul, 198 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 316 mul, 198 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int planar_redundant_Z(const planar_redundant_model *model, const planar_redundant_real *X, const
     planar_redundant_real *V, planar_redundant_real *Z);
@@ -168,7 +171,7 @@ int planar_redundant_H(const planar_redundant_model *model, const planar_redunda
 size_t planar_redundant_H_batch(const planar_redundant_model *model, size_t n, const
     planar_redundant_real *X, planar_redundant_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 511 mul, 331 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 435 mul, 299 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int planar_redundant_dynamics(const planar_redundant_model *model, const planar_redundant_real *X,
     const planar_redundant_real *V, planar_redundant_real *M, planar_redundant_real *Z,
@@ -192,7 +195,7 @@ size_t planar_redundant_joint_rates_batch(const planar_redundant_model *model, s
     planar_redundant_real *X, const planar_redundant_real *V, planar_redundant_real *rates, int
     *status);
 
-/* Accelerations of all joints. 223 mul, 122 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 220 mul, 122 add, 6 div, 3 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int planar_redundant_joint_accelerations(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
@@ -201,7 +204,7 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, planar_redundant_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 352 mul, 223 add, 6 div, 3 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 345 mul, 223 add, 6 div, 3 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int planar_redundant_inverse_dynamics(const planar_redundant_model *model, const
@@ -211,7 +214,7 @@ size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *mod
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, const planar_redundant_real *wrench, planar_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 511 mul, 331 add, 6 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 435 mul, 299 add, 6 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int planar_redundant_forward_dynamics(const planar_redundant_model *model, const
@@ -230,7 +233,7 @@ size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *A, planar_redundant_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 315 mul, 187 add, 6 div, 3
+/* Force of each leg on the platform at its platform joint, base axes. 309 mul, 187 add, 6 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (3 x 3). */
 int planar_redundant_leg_reactions(const planar_redundant_model *model, const

@@ -409,25 +409,38 @@ def _prepare(p):
     prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y + rho_tip_3_prrr_x*rho_tip_3_prrr_x
     )
     J_3_prrr_zz = prrr_link3_inertia_zz + J_3_prrr_t*prrr_link3_mass
-    # (prrr-V6) reciprocal vector 2
-    inv_prrr_platform_joint_offset_x = 1.0/prrr_platform_joint_offset_x
+    # (prrr-N19) inertia tensor of the links from 2 outwards about joint 2
+    Jc_2_prrr_zz = J_2_prrr_zz + J_3_prrr_zz
     # (prrr-G6) first moment of link 3 about the connection point
     h_3_prrr_x = prrr_link3_mass*rho_tip_3_prrr_x
     h_3_prrr_y = prrr_link3_centre_of_mass_y*prrr_link3_mass
+    # (prrr-V6) reciprocal vector 2
+    inv_prrr_platform_joint_offset_x = 1.0/prrr_platform_joint_offset_x
+    # (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_prrr_t = J_3_prrr_zz*inv_prrr_platform_joint_offset_x
+    d_Gamma_2_prrr_y = d_Gamma_2_prrr_t + h_3_prrr_x
+    # (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_prrr_t = d_Gamma_2_prrr_y*inv_prrr_platform_joint_offset_x
+    # (prrr-N14) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
+    d_phi_3_prrr_t = h_3_prrr_y*inv_prrr_platform_joint_offset_x
+    # (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_prrr_yy = -d_G_prrr_t - h_3_prrr_x*inv_prrr_platform_joint_offset_x
     # (L2) first moment about the platform origin
     h_star_t_3 = prrr_link3_mass*prrr_platform_point_x
     h_star_t_4 = prrr_link3_mass*prrr_platform_point_y
     # (L3) inertia tensor about the platform origin
     J_star_t_5 = prrr_link3_mass*size_prrr_t_2
     J_star_t_6 = prrr_link3_mass*size_prrr_t_3
-    # (prrr-N7) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
     g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
     # (prrr-G3) first moment of link 2 about the origin of link 2
     h_2_prrr_x = prrr_link2_centre_of_mass_x*prrr_link2_mass
     h_2_prrr_y = prrr_link2_centre_of_mass_y*prrr_link2_mass
-    # (prrr-N5) remainder without the acceleration in: inertia force of link 1 less its weight
+    # (prrr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
     f_1_prrr_o_x = g_r0_x*prrr_link1_mass
+    # (prrr-N24) force that accelerates joint 1, per unit
+    P_c1_prrr_t = prrr_link1_mass + prrr_link2_mass
     # (prrr-G2) first moment of link 1 about the origin of link 1
     h_1_prrr_x = prrr_link1_centre_of_mass_x*prrr_link1_mass
     h_1_prrr_y = prrr_link1_centre_of_mass_y*prrr_link1_mass
@@ -472,11 +485,22 @@ def _prepare(p):
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
     # (rrr-G5) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-V6) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
+    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_yy = (
+    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
+    )
     # (L2) first moment about the platform origin
     h_star_t_5 = rrr_link2_mass*rrr_platform_point_x
     h_star_t_6 = rrr_link2_mass*rrr_platform_point_y
@@ -525,10 +549,17 @@ def _prepare(p):
         "prrr": {
             "J_2_prrr_zz": np.broadcast_to(J_2_prrr_zz, _prrr),
             "J_3_prrr_zz": np.broadcast_to(J_3_prrr_zz, _prrr),
+            "Jc_2_prrr_zz": np.broadcast_to(Jc_2_prrr_zz, _prrr),
             "Kd_2_prrr_t_2": np.broadcast_to(Kd_2_prrr_t_2, _prrr),
             "Kd_2_prrr_t_3": np.broadcast_to(Kd_2_prrr_t_3, _prrr),
+            "P_c1_prrr_t": np.broadcast_to(P_c1_prrr_t, _prrr),
             "b_prrr_r0_x": np.broadcast_to(b_prrr_r0_x, _prrr),
             "branch_2_prrr": np.broadcast_to(branch_2_prrr, _prrr),
+            "d_G_prrr_t": np.broadcast_to(d_G_prrr_t, _prrr),
+            "d_Gamma_2_prrr_t": np.broadcast_to(d_Gamma_2_prrr_t, _prrr),
+            "d_Gamma_2_prrr_y": np.broadcast_to(d_Gamma_2_prrr_y, _prrr),
+            "d_c_prrr_yy": np.broadcast_to(d_c_prrr_yy, _prrr),
+            "d_phi_3_prrr_t": np.broadcast_to(d_phi_3_prrr_t, _prrr),
             "f_1_prrr_o_x": np.broadcast_to(f_1_prrr_o_x, _prrr),
             "g_r0_x": np.broadcast_to(g_r0_x, _prrr),
             "g_r0_y": np.broadcast_to(g_r0_y, _prrr),
@@ -562,11 +593,16 @@ def _prepare(p):
         "rrr": {
             "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
             "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Jc_1_rrr_zz": np.broadcast_to(Jc_1_rrr_zz, _rrr),
             "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
             "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
             "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
             "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
             "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "d_Gamma_1_rrr_t": np.broadcast_to(d_Gamma_1_rrr_t, _rrr),
+            "d_Gamma_1_rrr_y": np.broadcast_to(d_Gamma_1_rrr_y, _rrr),
+            "d_c_rrr_yy": np.broadcast_to(d_c_rrr_yy, _rrr),
+            "d_phi_2_rrr_t": np.broadcast_to(d_phi_2_rrr_t, _rrr),
             "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr),
             "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr),
             "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
@@ -743,7 +779,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 511 mul, 331 add, 6 div, 3 sqrt, 0 trig
+# dynamics: 435 mul, 299 add, 6 div, 3 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -785,12 +821,14 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_prrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, f_1_prrr_o_x, g_r0_x,
-        g_r0_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t,
-        inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy,
-        prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
-        prrr_joint3_offset_x, prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x,
-        prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t, size_prrr,
+    J_2_prrr_zz, J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t,
+        branch_2_prrr, d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy,
+        d_phi_3_prrr_t, f_1_prrr_o_x, g_r0_x, g_r0_y, h_2_prrr_x, h_2_prrr_y, h_3_prrr_x,
+        h_3_prrr_y, inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x, inv_uu_3_prrr_t,
+        prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx, prrr_base_frame_yy,
+        prrr_base_point_x, prrr_base_point_y, prrr_joint3_offset_x, prrr_link2_mass,
+        prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t,
+        size_prrr,
     ) = k
     y_1_extra_prrr, yd_1_prrr = x
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z = s
@@ -843,48 +881,32 @@ def _dynamics_prrr(c, k, x, s, f):
     axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
     )
     inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-    w_2_prrr_t = c_3_prrr*inv_r_2_prrr_r0_y
-    w_2_prrr_t_2 = inv_r_2_prrr_r0_y*s_3_prrr
     # (prrr-V6) reciprocal vector 2
     w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x
-    # (prrr-A22) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_prrr_zx = w_3_prrr_t - c_3_prrr*w_2_prrr_t - s_3_prrr*w_2_prrr_t_2
-    d_alpha_3_prrr_zy = (
-    inv_prrr_platform_joint_offset_x + c_3_prrr*w_2_prrr_t_2 - s_3_prrr*w_2_prrr_t
-    )
-    # (prrr-N23) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_prrr_zx = J_3_prrr_zz*d_alpha_3_prrr_zx - h_3_prrr_y
-    d_mu_3_prrr_zy = h_3_prrr_x + J_3_prrr_zz*d_alpha_3_prrr_zy
-    # (prrr-N37) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_prrr_zx = c_3_prrr*d_mu_3_prrr_zx + d_mu_3_prrr_zy*s_3_prrr - J_2_prrr_zz*w_2_prrr_t
-    d_N_2_prrr_zy = J_2_prrr_zz*w_2_prrr_t_2 + c_3_prrr*d_mu_3_prrr_zy - d_mu_3_prrr_zx*s_3_prrr
+    # (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x
+    d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz - d_Gamma_2_prrr_t_2)
+    # (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz - d_Gamma_2_prrr_t_2)
     # (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_prrr_t = d_mu_3_prrr_zy*inv_prrr_platform_joint_offset_x
-    d_G_prrr_xx = (
-    d_mu_3_prrr_zx*w_3_prrr_t - inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zx -
-        d_N_2_prrr_zy*s_3_prrr)
-    )
-    d_G_prrr_xy = (
-    d_mu_3_prrr_zy*w_3_prrr_t - inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zy +
-        d_N_2_prrr_zx*s_3_prrr)
-    )
-    # (prrr-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_prrr_xx = d_alpha_3_prrr_zx*h_3_prrr_y - d_G_prrr_xx
-    d_c_prrr_xy = d_alpha_3_prrr_zy*h_3_prrr_y - d_G_prrr_xy
-    # (prrr-N58) inertia of the leg at the connection point, without the mass gathered there
-    Q_prrr_t = d_G_prrr_t + d_c_prrr_xx + d_alpha_3_prrr_zy*h_3_prrr_x
+    d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y
+    d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y
+    # (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy
+    # (prrr-N57) inertia of the leg at the connection point, without the mass gathered there
+    Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx - d_c_prrr_yy
     Q_prrr_t_2 = 0.5*Q_prrr_t
-    Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_in_base_y*d_c_prrr_xy
-    Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y + axis_y_prrr_axes3_in_base_x*d_c_prrr_xy
-    Q_prrr_t_5 = 2.0*Q_prrr_t_3*axis_y_prrr_axes3_in_base_x - d_c_prrr_xx
-    Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_y + Q_prrr_t_4*axis_y_prrr_axes3_in_base_x
-    Q_prrr_t_7 = 2.0*Q_prrr_t_4*axis_y_prrr_axes3_in_base_y - d_c_prrr_xx
+    Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y + axis_y_prrr_axes3_in_base_x*d_c_prrr_xy
+    Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_in_base_y*d_c_prrr_xy
+    Q_prrr_t_5 = d_c_prrr_yy + 2.0*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y
+    Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_x + Q_prrr_t_4*axis_y_prrr_axes3_in_base_y
+    Q_prrr_t_7 = d_c_prrr_yy + 2.0*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x
     # (M2) coupling block of M
-    M_ta_t = Q_prrr_t_5*q_prrr_in_base_y - Q_prrr_t_6*q_prrr_in_base_x
-    M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y - Q_prrr_t_7*q_prrr_in_base_x
+    M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x
+    M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t = M_ta_t*q_prrr_in_base_y - M_ta_t_2*q_prrr_in_base_x
-    # (prrr-N7) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x
+    # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr
     g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr
     # (prrr-V1) velocity of the connection point
@@ -911,8 +933,7 @@ def _dynamics_prrr(c, k, x, s, f):
     W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
     # (prrr-A5) acceleration of the connection point at zero joint accelerations
     bias_prrr_x = (
-    -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-        c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr
+    -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
     )
     # (prrr-A1) centripetal acceleration of the connection point
     u_1_prrr_t = S_dot_prrr_t_2*omega_z
@@ -925,31 +946,31 @@ def _dynamics_prrr(c, k, x, s, f):
     )
     # (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x
-    rel_prrr_o_y = u_1_prrr_tip_y + prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr
+    rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr
     # (prrr-A11) remainder without the acceleration in: acceleration of joint 2
     qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x
-    # (prrr-N35) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o - g_r1_y*h_2_prrr_x
-    # (prrr-N16) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x
     acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr
-    # (prrr-A24) remainder without the acceleration in: angular acceleration of link 3
+    # (prrr-A21) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_prrr_o_z = (
     inv_prrr_platform_joint_offset_x*(rel_prrr_o_y + qdd_2_prrr_o*r_2_prrr_r0_x) - qdd_2_prrr_o
     )
-    # (prrr-N25) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_prrr_o_z = (
     J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x - acc_3_prrr_o_x*h_3_prrr_y
     )
     # (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z
-    # (prrr-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prrr-N53) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z
     G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z)
-    # (prrr-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y - G_prrr_o_t_2
     c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x
-    # (prrr-N59) velocity and gravity terms of the leg force
+    # (prrr-N58) velocity and gravity terms of the leg force
     U_prrr_in_base_x = (
     -axis_y_prrr_axes3_in_base_x*c_prrr_o_y - axis_y_prrr_axes3_in_base_y*c_prrr_o_x
     )
@@ -958,78 +979,69 @@ def _dynamics_prrr(c, k, x, s, f):
     )
     # (M7) rotational part of Z
     Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y
-    # (prrr-N14) remainder without the acceleration in: inertia force of link 2 less its weight
+    # (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x - g_r1_x*prrr_link2_mass
     f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass - h_2_prrr_x*qdd_2_prrr_o
-    # (prrr-N46) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+    # (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
     T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr
-    # (prrr-N64) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    # (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
     P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x + G_prrr_o_t_2*axis_y_prrr_axes3_r1_y
     P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t
-    # (prrr-N49) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_prrr_x = c_2_prrr*h_2_prrr_y*w_2_prrr_t + h_2_prrr_x*s_2_prrr*w_2_prrr_t
-    d_Gamma_1_prrr_y = -c_2_prrr*h_2_prrr_y*w_2_prrr_t_2 - h_2_prrr_x*s_2_prrr*w_2_prrr_t_2
-    # (prrr-N63) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    # (prrr-N20) force that accelerates joint 2, per unit
+    P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr
+    # (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t + axis_y_prrr_axes3_r1_y*d_G_prrr_xy
     d_P_1_prrr_x = (
-    c_3_prrr*d_Gamma_1_prrr_x - axis_y_prrr_axes3_r1_y*d_G_prrr_xx - d_Gamma_1_prrr_y*s_3_prrr -
-        axis_y_prrr_axes3_r1_x*d_mu_3_prrr_zx*inv_prrr_platform_joint_offset_x
-    )
-    d_P_1_prrr_y = (
-    c_3_prrr*d_Gamma_1_prrr_y + d_Gamma_1_prrr_x*s_3_prrr - axis_y_prrr_axes3_r1_x*d_G_prrr_t -
-        axis_y_prrr_axes3_r1_y*d_G_prrr_xy
+    -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y - axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
+        axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x
     )
     d_P_1_prrr_in_base_x = (
-    axis_y_prrr_axes3_in_base_x*d_P_1_prrr_y + axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x
+    axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t
     )
     d_P_1_prrr_in_base_y = (
-    axis_y_prrr_axes3_in_base_y*d_P_1_prrr_y - axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x
+    -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t
     )
     # (M8) coupling of extra joint 1 with the rotation of the platform
     M_ya_1_prrr_z = d_P_1_prrr_in_base_y*q_prrr_in_base_x - d_P_1_prrr_in_base_x*q_prrr_in_base_y
     # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
     d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-    # (prrr-N13) coefficient of the acceleration in: inertia force of link 2 less its weight
-    d0_f_2_prrr_x = c_2_prrr*prrr_link2_mass - d1_qdd_2_prrr*h_2_prrr_y
-    d0_f_2_prrr_y = d1_qdd_2_prrr*h_2_prrr_x - prrr_link2_mass*s_2_prrr
-    # (prrr-N45) coefficient of the acceleration in: inertia force of the links from 1 outwards, the last link left out
-    d0_T_1_prrr_x = prrr_link1_mass + c_2_prrr*d0_f_2_prrr_x - d0_f_2_prrr_y*s_2_prrr
-    # (prrr-N34) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d1_mu_2_prrr_z = J_2_prrr_zz*d1_qdd_2_prrr - c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr
-    # (prrr-A23) coefficient of the acceleration in: angular acceleration of link 3
-    d1_alpha_3_prrr_z = (
-    d1_qdd_2_prrr - inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
+    # (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d0_Gamma_2_prrr_t = (
+    J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
         d1_qdd_2_prrr*r_2_prrr_r0_x)
     )
-    # (prrr-N24) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d1_mu_3_prrr_t = J_3_prrr_zz*d1_alpha_3_prrr_z
-    # (prrr-N38) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d1_N_2_prrr_z = d1_mu_2_prrr_z + d1_mu_3_prrr_t
-    # (prrr-N53) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d1_G_prrr_t = d1_mu_3_prrr_t*inv_prrr_platform_joint_offset_x
-    # (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
+    # (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
+    # (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x
+    # (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+    d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr
+    # (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
     d0_P_1_prrr_t = (
-    axis_y_prrr_axes3_r1_x*d1_G_prrr_t +
-        axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d1_G_prrr_t*r_2_prrr_r0_x - d1_N_2_prrr_z)
+    axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
+        axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x - d0_Gamma_2_prrr)
     )
-    d0_P_1_prrr = d0_T_1_prrr_x - d0_P_1_prrr_t
+    d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t
     # (prrr-V5) reciprocal vector 1
-    w_2_prrr_t_3 = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y
-    w_2_prrr_t_4 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y
+    w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y
+    w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y
     # (M9) moment of the column's unit force about the platform origin
-    H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_4 + q_prrr_in_base_y*w_2_prrr_t_3
+    H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
     ok = (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr)
     return (
     ok, (Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_prrr_in_base_x,
         U_prrr_in_base_y, Z_a_t,), (P_1_prrr_o, d_P_1_prrr_in_base_x, d_P_1_prrr_in_base_x,
         d_P_1_prrr_in_base_y, d_P_1_prrr_in_base_y, M_ya_1_prrr_z, M_ya_1_prrr_z, d0_P_1_prrr,
-        1.0, -w_2_prrr_t_3, w_2_prrr_t_4, H_a_2_prrr_z, d1_qdd_2_prrr,),
+        1.0, -w_2_prrr_t, w_2_prrr_t_2, H_a_2_prrr_z, d1_qdd_2_prrr,),
     )
 
 
 def _dynamics_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x_2, g_r0_y_2,
+    J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+        d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x_2, g_r0_y_2,
         h_1_rrr_x, h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5,
         inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
         rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
@@ -1087,41 +1099,29 @@ def _dynamics_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr_t_6*q_rrr_in_base_x - Q_rrr_t_5*q_rrr_in_base_y
-    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
     M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
@@ -1142,13 +1142,12 @@ def _dynamics_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -1156,44 +1155,44 @@ def _dynamics_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y_2*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
     Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
     # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
     # (M10) moment of the column's unit force about the platform origin
-    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3
+    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (
     ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr_in_base_x,
-        U_rrr_in_base_y, Z_a_t_2,), (-w_1_rrr_t_3, w_1_rrr_t_4, H_a_1_rrr_z,),
+        U_rrr_in_base_y, Z_a_t_2,), (-w_1_rrr_t, w_1_rrr_t_2, H_a_1_rrr_z,),
     )
 
 
@@ -1206,14 +1205,14 @@ def _dynamics_after(c, s, t, f):
         total_rrr_xz, total_rrr_yz, total_rrr_zz, total_rrr_x, total_rrr_y, total_rrr_z,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_prrr_xx + total_rrr_xx
+    M_tt_xx = m_star - total_prrr_xx - total_rrr_xx
     M_tt_xy = total_prrr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_prrr_yy + total_rrr_yy
+    M_tt_yy = m_star - total_prrr_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_prrr_xz
+    M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_prrr_zz - J_star_t_10 - total_rrr_zz
+    M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_prrr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prrr_y + total_rrr_y
@@ -1226,7 +1225,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 315 mul, 202 add, 6 div, 3 sqrt, 0 trig
+# M: 246 mul, 170 add, 6 div, 3 sqrt, 0 trig
 def _M_before(c, X, f):
     sin = f.sin
     cos = f.cos
@@ -1249,12 +1248,13 @@ def _M_before(c, X, f):
 def _M_prrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_2_prrr_zz, J_3_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, h_2_prrr_x, h_2_prrr_y,
-        h_3_prrr_x, h_3_prrr_y, inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x,
+    J_3_prrr_zz, Jc_2_prrr_zz, Kd_2_prrr_t_2, Kd_2_prrr_t_3, P_c1_prrr_t, branch_2_prrr,
+        d_G_prrr_t, d_Gamma_2_prrr_t, d_Gamma_2_prrr_y, d_c_prrr_yy, d_phi_3_prrr_t, h_2_prrr_x,
+        h_2_prrr_y, h_3_prrr_y, inv_Kd_2_prrr_t, inv_prrr_platform_joint_offset_x,
         inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy, prrr_base_frame_yx,
         prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y, prrr_joint3_offset_x,
-        prrr_link1_mass, prrr_link2_mass, prrr_platform_joint_offset_x, prrr_platform_point_x,
-        prrr_platform_point_y, rho2_2_prrr_t, size_prrr,
+        prrr_platform_joint_offset_x, prrr_platform_point_x, prrr_platform_point_y, rho2_2_prrr_t,
+        size_prrr,
     ) = k
     y_1_extra_prrr, = x
     t_x, t_y, R_xx, R_yx = s
@@ -1307,93 +1307,67 @@ def _M_prrr(c, k, x, s, f):
     axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
     )
     inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-    w_2_prrr_t = c_3_prrr*inv_r_2_prrr_r0_y
-    w_2_prrr_t_2 = inv_r_2_prrr_r0_y*s_3_prrr
     # (prrr-V6) reciprocal vector 2
     w_3_prrr_t = inv_prrr_platform_joint_offset_x*inv_r_2_prrr_r0_y*r_2_prrr_r0_x
-    # (prrr-A22) coefficient of the acceleration in: angular acceleration of link 3
-    d_alpha_3_prrr_zx = w_3_prrr_t - c_3_prrr*w_2_prrr_t - s_3_prrr*w_2_prrr_t_2
-    d_alpha_3_prrr_zy = (
-    inv_prrr_platform_joint_offset_x + c_3_prrr*w_2_prrr_t_2 - s_3_prrr*w_2_prrr_t
-    )
-    # (prrr-N23) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_prrr_zx = J_3_prrr_zz*d_alpha_3_prrr_zx - h_3_prrr_y
-    d_mu_3_prrr_zy = h_3_prrr_x + J_3_prrr_zz*d_alpha_3_prrr_zy
-    # (prrr-N37) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d_N_2_prrr_zx = c_3_prrr*d_mu_3_prrr_zx + d_mu_3_prrr_zy*s_3_prrr - J_2_prrr_zz*w_2_prrr_t
-    d_N_2_prrr_zy = J_2_prrr_zz*w_2_prrr_t_2 + c_3_prrr*d_mu_3_prrr_zy - d_mu_3_prrr_zx*s_3_prrr
+    # (prrr-N42) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_prrr_t_2 = d_Gamma_2_prrr_t*r_2_prrr_r0_x
+    d_Gamma_2_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(Jc_2_prrr_zz - d_Gamma_2_prrr_t_2)
+    # (prrr-N31) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d_Gamma_3_prrr_x = -h_3_prrr_y - inv_r_2_prrr_r0_y*(J_3_prrr_zz - d_Gamma_2_prrr_t_2)
     # (prrr-N52) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_prrr_t = d_mu_3_prrr_zy*inv_prrr_platform_joint_offset_x
-    d_G_prrr_xx = (
-    d_mu_3_prrr_zx*w_3_prrr_t - inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zx -
-        d_N_2_prrr_zy*s_3_prrr)
-    )
-    d_G_prrr_xy = (
-    d_mu_3_prrr_zy*w_3_prrr_t - inv_r_2_prrr_r0_y*(c_3_prrr*d_N_2_prrr_zy +
-        d_N_2_prrr_zx*s_3_prrr)
-    )
-    # (prrr-N56) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_prrr_xx = d_alpha_3_prrr_zx*h_3_prrr_y - d_G_prrr_xx
-    d_c_prrr_xy = d_alpha_3_prrr_zy*h_3_prrr_y - d_G_prrr_xy
-    # (prrr-N58) inertia of the leg at the connection point, without the mass gathered there
-    Q_prrr_t = d_G_prrr_t + d_c_prrr_xx + d_alpha_3_prrr_zy*h_3_prrr_x
+    d_G_prrr_xx = d_Gamma_3_prrr_x*w_3_prrr_t - d_Gamma_2_prrr_x*inv_r_2_prrr_r0_y
+    d_G_prrr_xy = d_Gamma_2_prrr_y*w_3_prrr_t - d_Gamma_2_prrr_y*inv_r_2_prrr_r0_y
+    # (prrr-N55) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_prrr_xy = d_phi_3_prrr_t - d_G_prrr_xy
+    # (prrr-N57) inertia of the leg at the connection point, without the mass gathered there
+    Q_prrr_t = h_3_prrr_y*(w_3_prrr_t - inv_r_2_prrr_r0_y) - d_G_prrr_xx - d_c_prrr_yy
     Q_prrr_t_2 = 0.5*Q_prrr_t
-    Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_in_base_y*d_c_prrr_xy
-    Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y + axis_y_prrr_axes3_in_base_x*d_c_prrr_xy
-    Q_prrr_t_5 = 2.0*Q_prrr_t_3*axis_y_prrr_axes3_in_base_x - d_c_prrr_xx
-    Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_y + Q_prrr_t_4*axis_y_prrr_axes3_in_base_x
-    Q_prrr_t_7 = 2.0*Q_prrr_t_4*axis_y_prrr_axes3_in_base_y - d_c_prrr_xx
+    Q_prrr_t_3 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_y + axis_y_prrr_axes3_in_base_x*d_c_prrr_xy
+    Q_prrr_t_4 = Q_prrr_t_2*axis_y_prrr_axes3_in_base_x - axis_y_prrr_axes3_in_base_y*d_c_prrr_xy
+    Q_prrr_t_5 = d_c_prrr_yy + 2.0*Q_prrr_t_3*axis_y_prrr_axes3_in_base_y
+    Q_prrr_t_6 = Q_prrr_t_3*axis_y_prrr_axes3_in_base_x + Q_prrr_t_4*axis_y_prrr_axes3_in_base_y
+    Q_prrr_t_7 = d_c_prrr_yy + 2.0*Q_prrr_t_4*axis_y_prrr_axes3_in_base_x
     # (M2) coupling block of M
-    M_ta_t = Q_prrr_t_5*q_prrr_in_base_y - Q_prrr_t_6*q_prrr_in_base_x
-    M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y - Q_prrr_t_7*q_prrr_in_base_x
+    M_ta_t = Q_prrr_t_5*q_prrr_in_base_y + Q_prrr_t_6*q_prrr_in_base_x
+    M_ta_t_2 = Q_prrr_t_6*q_prrr_in_base_y + Q_prrr_t_7*q_prrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t = M_ta_t*q_prrr_in_base_y - M_ta_t_2*q_prrr_in_base_x
-    # (prrr-N49) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_prrr_x = c_2_prrr*h_2_prrr_y*w_2_prrr_t + h_2_prrr_x*s_2_prrr*w_2_prrr_t
-    d_Gamma_1_prrr_y = -c_2_prrr*h_2_prrr_y*w_2_prrr_t_2 - h_2_prrr_x*s_2_prrr*w_2_prrr_t_2
-    # (prrr-N63) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    M_aa_t = M_ta_t*q_prrr_in_base_y + M_ta_t_2*q_prrr_in_base_x
+    # (prrr-N20) force that accelerates joint 2, per unit
+    P_c2_prrr_r0_x = -c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr
+    # (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    d_P_1_prrr_t = axis_y_prrr_axes3_r1_x*d_G_prrr_t + axis_y_prrr_axes3_r1_y*d_G_prrr_xy
     d_P_1_prrr_x = (
-    c_3_prrr*d_Gamma_1_prrr_x - axis_y_prrr_axes3_r1_y*d_G_prrr_xx - d_Gamma_1_prrr_y*s_3_prrr -
-        axis_y_prrr_axes3_r1_x*d_mu_3_prrr_zx*inv_prrr_platform_joint_offset_x
-    )
-    d_P_1_prrr_y = (
-    c_3_prrr*d_Gamma_1_prrr_y + d_Gamma_1_prrr_x*s_3_prrr - axis_y_prrr_axes3_r1_x*d_G_prrr_t -
-        axis_y_prrr_axes3_r1_y*d_G_prrr_xy
+    -P_c2_prrr_r0_x*inv_r_2_prrr_r0_y - axis_y_prrr_axes3_r1_y*d_G_prrr_xx -
+        axis_y_prrr_axes3_r1_x*d_Gamma_3_prrr_x*inv_prrr_platform_joint_offset_x
     )
     d_P_1_prrr_in_base_x = (
-    axis_y_prrr_axes3_in_base_x*d_P_1_prrr_y + axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x
+    axis_y_prrr_axes3_in_base_y*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_x*d_P_1_prrr_t
     )
     d_P_1_prrr_in_base_y = (
-    axis_y_prrr_axes3_in_base_y*d_P_1_prrr_y - axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x
+    -axis_y_prrr_axes3_in_base_x*d_P_1_prrr_x - axis_y_prrr_axes3_in_base_y*d_P_1_prrr_t
     )
     # (M8) coupling of extra joint 1 with the rotation of the platform
     M_ya_1_prrr_z = d_P_1_prrr_in_base_y*q_prrr_in_base_x - d_P_1_prrr_in_base_x*q_prrr_in_base_y
     # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
     d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
-    # (prrr-N13) coefficient of the acceleration in: inertia force of link 2 less its weight
-    d0_f_2_prrr_x = c_2_prrr*prrr_link2_mass - d1_qdd_2_prrr*h_2_prrr_y
-    d0_f_2_prrr_y = d1_qdd_2_prrr*h_2_prrr_x - prrr_link2_mass*s_2_prrr
-    # (prrr-N45) coefficient of the acceleration in: inertia force of the links from 1 outwards, the last link left out
-    d0_T_1_prrr_x = prrr_link1_mass + c_2_prrr*d0_f_2_prrr_x - d0_f_2_prrr_y*s_2_prrr
-    # (prrr-N34) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d1_mu_2_prrr_z = J_2_prrr_zz*d1_qdd_2_prrr - c_2_prrr*h_2_prrr_y - h_2_prrr_x*s_2_prrr
-    # (prrr-A23) coefficient of the acceleration in: angular acceleration of link 3
-    d1_alpha_3_prrr_z = (
-    d1_qdd_2_prrr - inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
+    # (prrr-N41) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d0_Gamma_2_prrr_t = (
+    J_3_prrr_zz*inv_prrr_platform_joint_offset_x*(axis_y_prrr_axes3_r1_x +
         d1_qdd_2_prrr*r_2_prrr_r0_x)
     )
-    # (prrr-N24) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d1_mu_3_prrr_t = J_3_prrr_zz*d1_alpha_3_prrr_z
-    # (prrr-N38) coefficient of the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
-    d1_N_2_prrr_z = d1_mu_2_prrr_z + d1_mu_3_prrr_t
-    # (prrr-N53) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d1_G_prrr_t = d1_mu_3_prrr_t*inv_prrr_platform_joint_offset_x
-    # (prrr-N62) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    d0_Gamma_2_prrr = P_c2_prrr_r0_x + Jc_2_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
+    # (prrr-N32) coefficient of the acceleration in: moment about axis 3 of the distal links' inertia and weight
+    d1_Gamma_3_prrr = J_3_prrr_zz*d1_qdd_2_prrr - d0_Gamma_2_prrr_t
+    # (prrr-N51) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d0_G_prrr_t = d1_Gamma_3_prrr*inv_prrr_platform_joint_offset_x
+    # (prrr-N47) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
+    d0_Gamma_1_prrr = P_c1_prrr_t + P_c2_prrr_r0_x*d1_qdd_2_prrr
+    # (prrr-N61) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
     d0_P_1_prrr_t = (
-    axis_y_prrr_axes3_r1_x*d1_G_prrr_t +
-        axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d1_G_prrr_t*r_2_prrr_r0_x - d1_N_2_prrr_z)
+    axis_y_prrr_axes3_r1_x*d0_G_prrr_t +
+        axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x - d0_Gamma_2_prrr)
     )
-    d0_P_1_prrr = d0_T_1_prrr_x - d0_P_1_prrr_t
+    d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t
     ok = (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr)
     return (
     ok, (Q_prrr_t_5, Q_prrr_t_6, Q_prrr_t_7, M_ta_t, M_ta_t_2, M_aa_t,), (d_P_1_prrr_in_base_x,
@@ -1405,11 +1379,12 @@ def _M_prrr(c, k, x, s, f):
 def _M_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, h_2_rrr_x, h_2_rrr_y,
-        inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+        d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+        inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+        rrr_platform_point_y, size_rrr,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rrr-K1) from the base point to the connection point
@@ -1445,6 +1420,7 @@ def _M_rrr(c, k, x, s, f):
     # (rrr-V2) from joint 1 to the connection point, along the links
     r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
     r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
     r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
     # (rrr-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr = 1.0/rho2_1_rrr
@@ -1461,43 +1437,29 @@ def _M_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr_t_6*q_rrr_in_base_x - Q_rrr_t_5*q_rrr_in_base_y
-    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t_3 = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
     M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
@@ -1512,21 +1474,21 @@ def _M_after(c, s, t, f):
         total_rrr_xx, total_rrr_xy, total_rrr_yy, total_rrr_xz, total_rrr_yz, total_rrr_zz,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_prrr_xx + total_rrr_xx
+    M_tt_xx = m_star - total_prrr_xx - total_rrr_xx
     M_tt_xy = total_prrr_xy + total_rrr_xy
-    M_tt_yy = m_star + total_prrr_yy + total_rrr_yy
+    M_tt_yy = m_star - total_prrr_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = total_rrr_xz - h_star_in_base_y - total_prrr_xz
+    M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_prrr_zz - J_star_t_10 - total_rrr_zz
+    M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz
     ok = True
     return (
     ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, M_ta_xz, M_ta_xz, M_ta_yz, M_ta_yz, M_aa_zz,),
     )
 
 
-# Z: 323 mul, 198 add, 6 div, 3 sqrt, 0 trig
+# Z: 316 mul, 198 add, 6 div, 3 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -1620,7 +1582,7 @@ def _Z_prrr(c, k, x, s, f):
     axis_y_prrr_axes3_r1_x*prrr_base_frame_yy - axis_y_prrr_axes3_r1_y*prrr_base_frame_yx
     )
     inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
-    # (prrr-N7) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r1_x = c_2_prrr*g_r0_x + g_r0_y*s_2_prrr
     g_r1_y = c_2_prrr*g_r0_y - g_r0_x*s_2_prrr
     # (prrr-V1) velocity of the connection point
@@ -1647,8 +1609,7 @@ def _Z_prrr(c, k, x, s, f):
     W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
     # (prrr-A5) acceleration of the connection point at zero joint accelerations
     bias_prrr_x = (
-    -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-        c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr
+    -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
     )
     # (prrr-A1) centripetal acceleration of the connection point
     u_1_prrr_t = S_dot_prrr_t_2*omega_z
@@ -1661,31 +1622,31 @@ def _Z_prrr(c, k, x, s, f):
     )
     # (prrr-A8) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_prrr_o_x = u_1_prrr_tip_x - bias_prrr_x
-    rel_prrr_o_y = u_1_prrr_tip_y + prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr
+    rel_prrr_o_y = u_1_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr
     # (prrr-A11) remainder without the acceleration in: acceleration of joint 2
     qdd_2_prrr_o = inv_r_2_prrr_r0_y*rel_prrr_o_x
-    # (prrr-N35) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prrr-N37) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_prrr_o_z = g_r1_x*h_2_prrr_y - J_2_prrr_zz*qdd_2_prrr_o - g_r1_y*h_2_prrr_x
-    # (prrr-N16) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
+    # (prrr-N12) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     acc_3_prrr_o_x = u_1_prrr_tip_x + g_r1_y*s_3_prrr - c_3_prrr*g_r1_x
     acc_3_prrr_o_y = u_1_prrr_tip_y - c_3_prrr*g_r1_y - g_r1_x*s_3_prrr
-    # (prrr-A24) remainder without the acceleration in: angular acceleration of link 3
+    # (prrr-A21) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_prrr_o_z = (
     inv_prrr_platform_joint_offset_x*(rel_prrr_o_y + qdd_2_prrr_o*r_2_prrr_r0_x) - qdd_2_prrr_o
     )
-    # (prrr-N25) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
+    # (prrr-N29) remainder without the acceleration in: inertia moment of the links that turn with link 3, about their reference points
     mu_3_prrr_o_z = (
     J_3_prrr_zz*alpha_3_prrr_o_z + acc_3_prrr_o_y*h_3_prrr_x - acc_3_prrr_o_x*h_3_prrr_y
     )
     # (prrr-N39) remainder without the acceleration in: moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_prrr_o_z = mu_2_prrr_o_z + mu_3_prrr_o_z
-    # (prrr-N54) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prrr-N53) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prrr_o_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_o_z
     G_prrr_o_t_2 = inv_r_2_prrr_r0_y*(G_prrr_o_t*r_2_prrr_r0_x - N_2_prrr_o_z)
-    # (prrr-N57) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (prrr-N56) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_prrr_o_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_o_z*h_3_prrr_y - G_prrr_o_t_2
     c_prrr_o_y = W_3_prrr_t*h_3_prrr_y - G_prrr_o_t - alpha_3_prrr_o_z*h_3_prrr_x
-    # (prrr-N59) velocity and gravity terms of the leg force
+    # (prrr-N58) velocity and gravity terms of the leg force
     U_prrr_in_base_x = (
     -axis_y_prrr_axes3_in_base_x*c_prrr_o_y - axis_y_prrr_axes3_in_base_y*c_prrr_o_x
     )
@@ -1694,12 +1655,12 @@ def _Z_prrr(c, k, x, s, f):
     )
     # (M7) rotational part of Z
     Z_a_t = U_prrr_in_base_y*q_prrr_in_base_x - U_prrr_in_base_x*q_prrr_in_base_y
-    # (prrr-N14) remainder without the acceleration in: inertia force of link 2 less its weight
+    # (prrr-N10) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_prrr_o_x = h_2_prrr_y*qdd_2_prrr_o - W_2_prrr_t*h_2_prrr_x - g_r1_x*prrr_link2_mass
     f_2_prrr_o_y = -W_2_prrr_t*h_2_prrr_y - g_r1_y*prrr_link2_mass - h_2_prrr_x*qdd_2_prrr_o
-    # (prrr-N46) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
+    # (prrr-N45) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
     T_1_prrr_o_x = c_2_prrr*f_2_prrr_o_x - f_1_prrr_o_x - f_2_prrr_o_y*s_2_prrr
-    # (prrr-N64) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
+    # (prrr-N63) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 1
     P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x + G_prrr_o_t_2*axis_y_prrr_axes3_r1_y
     P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t
     ok = (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr)
@@ -1785,13 +1746,12 @@ def _Z_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -1799,31 +1759,31 @@ def _Z_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x_2*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y_2*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y_2*s_2_rrr - c_2_rrr*g_r1_x_2
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y_2 - g_r1_x_2*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
@@ -1993,7 +1953,7 @@ def _H_rrr(c, k, x, s, f):
     return (ok, (), (-w_1_rrr_t, w_1_rrr_t_2, H_a_1_rrr_z,),)
 
 
-# required: 352 mul, 223 add, 6 div, 3 sqrt, 0 trig
+# required: 345 mul, 223 add, 6 div, 3 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2128,8 +2088,7 @@ def _required_prrr(c, k, x, s, f):
     W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
     # (prrr-A5) acceleration of the connection point at zero joint accelerations
     bias_prrr_x = (
-    -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-        c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr
+    -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
     )
     # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
     d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
@@ -2153,12 +2112,12 @@ def _required_prrr(c, k, x, s, f):
     # (prrr-A6) acceleration of the connection point left to the joint accelerations
     rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr
     rel_prrr_y = (
-    S_ddot_prrr_tip_y + prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr -
+    S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
         axis_y_prrr_axes3_r1_x*ydd_1_prrr
     )
     # (prrr-A9) acceleration of joint 2
     qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
-    # (prrr-N15) acceleration of the reference point of link 3, less gravity
+    # (prrr-N11) acceleration of the reference point of link 3, less gravity
     acc_3_prrr_x = (
     S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
         axis_y_prrr_axes3_in_base_y*gravity_x
@@ -2167,23 +2126,23 @@ def _required_prrr(c, k, x, s, f):
     S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
         axis_y_prrr_axes3_in_base_y*gravity_y
     )
-    # (prrr-N6) acceleration of the reference point of link 2, less gravity
+    # (prrr-N5) acceleration of the reference point of link 2, less gravity
     acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr
     acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr
-    # (prrr-N32) inertia moment of the links that turn with link 2, about their reference points
+    # (prrr-N36) inertia moment of the links that turn with link 2, about their reference points
     mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr - acc_2_prrr_x*h_2_prrr_y
-    # (prrr-A21) angular acceleration of link 3
+    # (prrr-A19) angular acceleration of link 3
     alpha_3_prrr_z = (
     inv_prrr_platform_joint_offset_x*(rel_prrr_y + qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr
     )
-    # (prrr-N22) inertia moment of the links that turn with link 3, about their reference points
+    # (prrr-N28) inertia moment of the links that turn with link 3, about their reference points
     mu_3_prrr_z = J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x - acc_3_prrr_x*h_3_prrr_y
-    # (prrr-N36) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z
-    # (prrr-N51) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z
     G_prrr_t_2 = inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x - N_2_prrr_z)
-    # (prrr-N55) leg force on the platform without actuation and without the mass at the connection point
+    # (prrr-N54) leg force on the platform without actuation and without the mass at the connection point
     c_prrr_x = W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y - G_prrr_t_2
     c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x
     c_prrr_in_base_x = axis_y_prrr_axes3_in_base_x*c_prrr_y + axis_y_prrr_axes3_in_base_y*c_prrr_x
@@ -2192,12 +2151,12 @@ def _required_prrr(c, k, x, s, f):
     R_a_t = c_prrr_in_base_y*q_prrr_in_base_x - c_prrr_in_base_x*q_prrr_in_base_y
     # (prrr-N1) acceleration of the reference point of link 1, less gravity
     acc_1_prrr_x = ydd_1_prrr - g_r0_x
-    # (prrr-N12) inertia force of link 2 less its weight
+    # (prrr-N9) inertia force of link 2 less its weight
     f_2_prrr_x = acc_2_prrr_x*prrr_link2_mass + h_2_prrr_y*qdd_2_prrr - W_2_prrr_t*h_2_prrr_x
     f_2_prrr_y = acc_2_prrr_y*prrr_link2_mass - W_2_prrr_t*h_2_prrr_y - h_2_prrr_x*qdd_2_prrr
     # (prrr-N44) inertia force of the links from 1 outwards, the last link left out
     T_1_prrr_x = acc_1_prrr_x*prrr_link1_mass + c_2_prrr*f_2_prrr_x - f_2_prrr_y*s_2_prrr
-    # (prrr-N61) inertia and weight of the leg along the extra freedom of joint 1
+    # (prrr-N60) inertia and weight of the leg along the extra freedom of joint 1
     P_1_prrr_t = G_prrr_t*axis_y_prrr_axes3_r1_x + G_prrr_t_2*axis_y_prrr_axes3_r1_y
     P_1_prrr = T_1_prrr_x - P_1_prrr_t
     ok = (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr)
@@ -2284,13 +2243,12 @@ def _required_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -2310,7 +2268,7 @@ def _required_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -2320,22 +2278,22 @@ def _required_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
         h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
@@ -2648,7 +2606,7 @@ def _joint_rates_rrr(c, k, x, s, f):
     return (ok, (), (-qd_1_rrr, qd_2_rrr,),)
 
 
-# joint_accelerations: 223 mul, 122 add, 6 div, 3 sqrt, 0 trig
+# joint_accelerations: 220 mul, 122 add, 6 div, 3 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2758,10 +2716,12 @@ def _joint_accelerations_prrr(c, k, x, s, f):
     inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
         S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
     )
+    # (prrr-V11) centripetal tensor of link 2
+    W_2_prrr_t = qd_2_prrr*qd_2_prrr
     # (prrr-A5) acceleration of the connection point at zero joint accelerations
     bias_prrr_x = (
     -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-        c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr
+        W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
     )
     # (prrr-A2) acceleration of the connection point without its centripetal part
     a_p_prrr_x = t_ddot_x - alpha_z*q_prrr_in_base_y
@@ -2776,7 +2736,7 @@ def _joint_accelerations_prrr(c, k, x, s, f):
     )
     rel_prrr_y = (
     S_ddot_prrr_x*axis_y_prrr_axes3_in_base_x + S_ddot_prrr_y*axis_y_prrr_axes3_in_base_y +
-        prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr - axis_y_prrr_axes3_r1_x*ydd_1_prrr
+        W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr - axis_y_prrr_axes3_r1_x*ydd_1_prrr
     )
     # (prrr-A9) acceleration of joint 2
     qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
@@ -2859,10 +2819,12 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr_x = (
     -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
+        W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     )
     # (rrr-A2) acceleration of the connection point without its centripetal part
     a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
@@ -2876,7 +2838,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     )
     rel_rrr_y = (
     S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-        qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+        W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     )
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
@@ -2885,7 +2847,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     return (ok, (), (-qdd_1_rrr, qdd_2_rrr,),)
 
 
-# legs: 315 mul, 187 add, 6 div, 3 sqrt, 0 trig
+# legs: 309 mul, 187 add, 6 div, 3 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2997,12 +2959,13 @@ def _legs_prrr(c, k, x, s, f):
     inv_prrr_platform_joint_offset_x*(S_dot_rest_prrr_x*axis_y_prrr_axes3_in_base_x +
         S_dot_rest_prrr_y*axis_y_prrr_axes3_in_base_y + qd_2_prrr*r_2_prrr_r0_x) - qd_2_prrr
     )
+    # (prrr-V11) centripetal tensor of link 2
+    W_2_prrr_t = qd_2_prrr*qd_2_prrr
     # (prrr-V13) centripetal tensor of link 3
     W_3_prrr_t = omega_3_prrr_z*omega_3_prrr_z
     # (prrr-A5) acceleration of the connection point at zero joint accelerations
     bias_prrr_x = (
-    -omega_3_prrr_z*omega_3_prrr_z*prrr_platform_joint_offset_x -
-        c_3_prrr*prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr
+    -W_3_prrr_t*prrr_platform_joint_offset_x - W_2_prrr_t*c_3_prrr*prrr_joint3_offset_x
     )
     # (prrr-V5) reciprocal vector 1
     w_2_prrr_t = axis_y_prrr_axes3_in_base_y*inv_r_2_prrr_r0_y
@@ -3022,12 +2985,12 @@ def _legs_prrr(c, k, x, s, f):
     # (prrr-A6) acceleration of the connection point left to the joint accelerations
     rel_prrr_x = S_ddot_prrr_tip_x - bias_prrr_x - axis_y_prrr_axes3_r1_y*ydd_1_prrr
     rel_prrr_y = (
-    S_ddot_prrr_tip_y + prrr_joint3_offset_x*qd_2_prrr*qd_2_prrr*s_3_prrr -
+    S_ddot_prrr_tip_y + W_2_prrr_t*prrr_joint3_offset_x*s_3_prrr -
         axis_y_prrr_axes3_r1_x*ydd_1_prrr
     )
     # (prrr-A9) acceleration of joint 2
     qdd_2_prrr = inv_r_2_prrr_r0_y*rel_prrr_x
-    # (prrr-N15) acceleration of the reference point of link 3, less gravity
+    # (prrr-N11) acceleration of the reference point of link 3, less gravity
     acc_3_prrr_x = (
     S_ddot_prrr_tip_x + axis_y_prrr_axes3_in_base_x*gravity_y -
         axis_y_prrr_axes3_in_base_y*gravity_x
@@ -3036,28 +2999,28 @@ def _legs_prrr(c, k, x, s, f):
     S_ddot_prrr_tip_y - axis_y_prrr_axes3_in_base_x*gravity_x -
         axis_y_prrr_axes3_in_base_y*gravity_y
     )
-    # (prrr-N6) acceleration of the reference point of link 2, less gravity
+    # (prrr-N5) acceleration of the reference point of link 2, less gravity
     acc_2_prrr_x = c_2_prrr*ydd_1_prrr - c_2_prrr*g_r0_x - g_r0_y*s_2_prrr
     acc_2_prrr_y = g_r0_x*s_2_prrr - c_2_prrr*g_r0_y - s_2_prrr*ydd_1_prrr
-    # (prrr-N32) inertia moment of the links that turn with link 2, about their reference points
+    # (prrr-N36) inertia moment of the links that turn with link 2, about their reference points
     mu_2_prrr_z = acc_2_prrr_y*h_2_prrr_x - J_2_prrr_zz*qdd_2_prrr - acc_2_prrr_x*h_2_prrr_y
-    # (prrr-A21) angular acceleration of link 3
+    # (prrr-A19) angular acceleration of link 3
     alpha_3_prrr_z = (
     inv_prrr_platform_joint_offset_x*(rel_prrr_y + qdd_2_prrr*r_2_prrr_r0_x) - qdd_2_prrr
     )
-    # (prrr-N22) inertia moment of the links that turn with link 3, about their reference points
+    # (prrr-N28) inertia moment of the links that turn with link 3, about their reference points
     mu_3_prrr_z = J_3_prrr_zz*alpha_3_prrr_z + acc_3_prrr_y*h_3_prrr_x - acc_3_prrr_x*h_3_prrr_y
-    # (prrr-N36) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
+    # (prrr-N38) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_prrr_z = mu_2_prrr_z + mu_3_prrr_z
-    # (prrr-N51) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_prrr_t = inv_prrr_platform_joint_offset_x*mu_3_prrr_z
-    # (prrr-N55) leg force on the platform without actuation and without the mass at the connection point
+    # (prrr-N54) leg force on the platform without actuation and without the mass at the connection point
     c_prrr_x = (
     W_3_prrr_t*h_3_prrr_x + alpha_3_prrr_z*h_3_prrr_y - inv_r_2_prrr_r0_y*(G_prrr_t*r_2_prrr_r0_x
         - N_2_prrr_z)
     )
     c_prrr_y = W_3_prrr_t*h_3_prrr_y - G_prrr_t - alpha_3_prrr_z*h_3_prrr_x
-    # (prrr-N60) leg force on the platform without actuation, the last link's mass included
+    # (prrr-N59) leg force on the platform without actuation, the last link's mass included
     c_true_prrr_x = c_prrr_x - acc_3_prrr_x*prrr_link3_mass
     c_true_prrr_y = c_prrr_y - acc_3_prrr_y*prrr_link3_mass
     c_true_prrr_in_base_x = (
@@ -3147,13 +3110,12 @@ def _legs_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -3171,7 +3133,7 @@ def _legs_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -3181,28 +3143,28 @@ def _legs_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x_2 + g_r0_y_2*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr -
         h_1_rrr_x*(c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
     )
     c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    # (rrr-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
     c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
     c_true_rrr_in_base_x = (
@@ -3281,16 +3243,17 @@ def _potential_prrr(c, k, x, s, f):
     c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
     # (prrr-K13) sine of the angle of joint 2 from its reference direction
     s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
-    # (prrr-N23) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    _x = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr
-    _y = -c_3_prrr*h_3_prrr_x - h_3_prrr_y*s_3_prrr
     # (V1) potential energy
     potential_t_5 = b_prrr_r0_x + y_1_extra_prrr
+    # (prrr-G6) first moment of link 3 about the connection point
+    h_3_prrr_r0_x = c_3_prrr*h_3_prrr_x + h_3_prrr_y*s_3_prrr
+    h_3_prrr_r0_y = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr
+    # (V1) potential energy
     potential_t_6 = (
-    g_r0_x*(h_1_prrr_y + c_2_prrr*h_2_prrr_x + potential_t_5*prrr_link1_mass +
-        potential_t_5*prrr_link2_mass - _x*s_2_prrr - _y*c_2_prrr - h_2_prrr_y*s_2_prrr) +
-        g_r0_y*(potential_t + potential_t_2 + _x*c_2_prrr + c_2_prrr*h_2_prrr_y +
-        h_2_prrr_x*s_2_prrr - h_1_prrr_x - _y*s_2_prrr)
+    g_r0_x*(h_1_prrr_y + c_2_prrr*h_2_prrr_x + c_2_prrr*h_3_prrr_r0_x +
+        potential_t_5*prrr_link1_mass + potential_t_5*prrr_link2_mass - h_2_prrr_y*s_2_prrr -
+        h_3_prrr_r0_y*s_2_prrr) + g_r0_y*(potential_t + potential_t_2 + c_2_prrr*h_2_prrr_y +
+        c_2_prrr*h_3_prrr_r0_y + h_2_prrr_x*s_2_prrr + h_3_prrr_r0_x*s_2_prrr - h_1_prrr_x)
     )
     ok = (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr >= 0.0)
     return (ok, (potential_t_6,), (),)
@@ -3373,14 +3336,14 @@ arrays=(('M', (4, 4)), ('Z', (4,)), ('H', (4, 4))),
             _dynamics_prrr,
             "prrr",
 (),
-('J_2_prrr_zz', 'J_3_prrr_zz', 'Kd_2_prrr_t_2', 'Kd_2_prrr_t_3', 'branch_2_prrr', 'f_1_prrr_o_x',
-            'g_r0_x', 'g_r0_y', 'h_2_prrr_x', 'h_2_prrr_y', 'h_3_prrr_x', 'h_3_prrr_y',
-            'inv_Kd_2_prrr_t', 'inv_prrr_platform_joint_offset_x', 'inv_uu_3_prrr_t',
-            'prrr_base_frame_xx', 'prrr_base_frame_xy', 'prrr_base_frame_yx',
+('J_2_prrr_zz', 'J_3_prrr_zz', 'Jc_2_prrr_zz', 'Kd_2_prrr_t_2', 'Kd_2_prrr_t_3', 'P_c1_prrr_t',
+            'branch_2_prrr', 'd_G_prrr_t', 'd_Gamma_2_prrr_t', 'd_Gamma_2_prrr_y', 'd_c_prrr_yy',
+            'd_phi_3_prrr_t', 'f_1_prrr_o_x', 'g_r0_x', 'g_r0_y', 'h_2_prrr_x', 'h_2_prrr_y',
+            'h_3_prrr_x', 'h_3_prrr_y', 'inv_Kd_2_prrr_t', 'inv_prrr_platform_joint_offset_x',
+            'inv_uu_3_prrr_t', 'prrr_base_frame_xx', 'prrr_base_frame_xy', 'prrr_base_frame_yx',
             'prrr_base_frame_yy', 'prrr_base_point_x', 'prrr_base_point_y',
-            'prrr_joint3_offset_x', 'prrr_link1_mass', 'prrr_link2_mass',
-            'prrr_platform_joint_offset_x', 'prrr_platform_point_x', 'prrr_platform_point_y',
-            'rho2_2_prrr_t', 'size_prrr'),
+            'prrr_joint3_offset_x', 'prrr_link2_mass', 'prrr_platform_joint_offset_x',
+            'prrr_platform_point_x', 'prrr_platform_point_y', 'rho2_2_prrr_t', 'size_prrr'),
 (('X', (3,)), ('V', (3,))),
 (0, 1, 2, 3, 4, 5, 6),
             9,
@@ -3404,7 +3367,8 @@ arrays=(('M', (4, 4)), ('Z', (4,)), ('H', (4, 4))),
             _dynamics_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x_2',
+('J_1_rrr_zz', 'J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr',
+            'd_Gamma_1_rrr_t', 'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'g_r0_x_2',
             'g_r0_y_2', 'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
             'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
             'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
@@ -3444,13 +3408,13 @@ arrays=(('M', (4, 4)),),
             _M_prrr,
             "prrr",
 (),
-('J_2_prrr_zz', 'J_3_prrr_zz', 'Kd_2_prrr_t_2', 'Kd_2_prrr_t_3', 'branch_2_prrr', 'h_2_prrr_x',
-            'h_2_prrr_y', 'h_3_prrr_x', 'h_3_prrr_y', 'inv_Kd_2_prrr_t',
+('J_3_prrr_zz', 'Jc_2_prrr_zz', 'Kd_2_prrr_t_2', 'Kd_2_prrr_t_3', 'P_c1_prrr_t', 'branch_2_prrr',
+            'd_G_prrr_t', 'd_Gamma_2_prrr_t', 'd_Gamma_2_prrr_y', 'd_c_prrr_yy', 'd_phi_3_prrr_t',
+            'h_2_prrr_x', 'h_2_prrr_y', 'h_3_prrr_y', 'inv_Kd_2_prrr_t',
             'inv_prrr_platform_joint_offset_x', 'inv_uu_3_prrr_t', 'prrr_base_frame_xx',
             'prrr_base_frame_xy', 'prrr_base_frame_yx', 'prrr_base_frame_yy', 'prrr_base_point_x',
-            'prrr_base_point_y', 'prrr_joint3_offset_x', 'prrr_link1_mass', 'prrr_link2_mass',
-            'prrr_platform_joint_offset_x', 'prrr_platform_point_x', 'prrr_platform_point_y',
-            'rho2_2_prrr_t', 'size_prrr'),
+            'prrr_base_point_y', 'prrr_joint3_offset_x', 'prrr_platform_joint_offset_x',
+            'prrr_platform_point_x', 'prrr_platform_point_y', 'rho2_2_prrr_t', 'size_prrr'),
 (('X', (3,)),),
 (0, 1, 2, 3),
             6,
@@ -3468,10 +3432,11 @@ arrays=(('M', (4, 4)),),
             _M_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'h_2_rrr_x',
-            'h_2_rrr_y', 'inv_Kd_1_rrr_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t',
-            'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+('J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'd_Gamma_1_rrr_t',
+            'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
             'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
             'size_rrr'),
 (),

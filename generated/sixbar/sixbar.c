@@ -439,11 +439,24 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
-        /* (rrr-V6) reciprocal vector 2 */
-        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
         /* (rrr-G5) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
+        /* (rrr-V6) reciprocal vector 2 */
+        const real inv_rrr_platform_joint_offset_x = 1/rrr_platform_joint_offset_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x;
+        const real d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x;
+        /* (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x;
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr_yy = -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x -
+            h_2_rrr_x*inv_rrr_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_3 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_4 = rrr_link2_mass*rrr_platform_point_y;
@@ -464,11 +477,16 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
             rrr_base_frame_yy*rrr_base_point_y;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
+        model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
         model->Kd_1_rrr_t_2[leg] = Kd_1_rrr_t_2;
         model->Kd_1_rrr_t_3[leg] = Kd_1_rrr_t_3;
         model->b_rrr_r0_x[leg] = b_rrr_r0_x;
         model->b_rrr_r0_y[leg] = b_rrr_r0_y;
         model->branch_1_rrr[leg] = branch_1_rrr;
+        model->d_Gamma_1_rrr_t[leg] = d_Gamma_1_rrr_t;
+        model->d_Gamma_1_rrr_y[leg] = d_Gamma_1_rrr_y;
+        model->d_c_rrr_yy[leg] = d_c_rrr_yy;
+        model->d_phi_2_rrr_t[leg] = d_phi_2_rrr_t;
         model->g_r0_x[leg] = g_r0_x;
         model->g_r0_y[leg] = g_r0_y;
         model->h_1_rrr_x[leg] = h_1_rrr_x;
@@ -549,11 +567,24 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
         const real J_2_rrr2_t = rho_tip_2_rrr2_x*rho_tip_2_rrr2_x +
             rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y;
         const real J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass;
-        /* (rrr2-V6) reciprocal vector 2 */
-        const real inv_rrr2_platform_joint_offset_x = 1/rrr2_platform_joint_offset_x;
+        /* (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1 */
+        const real Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz;
         /* (rrr2-G5) first moment of link 2 about the connection point */
         const real h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass;
         const real h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass;
+        /* (rrr2-V6) reciprocal vector 2 */
+        const real inv_rrr2_platform_joint_offset_x = 1/rrr2_platform_joint_offset_x;
+        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr2_t = J_2_rrr2_zz*inv_rrr2_platform_joint_offset_x;
+        const real d_Gamma_1_rrr2_y = d_Gamma_1_rrr2_t + h_2_rrr2_x;
+        /* (rrr2-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real d_phi_2_rrr2_t = h_2_rrr2_y*inv_rrr2_platform_joint_offset_x;
+        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rrr2_yy = -d_Gamma_1_rrr2_y*inv_rrr2_platform_joint_offset_x -
+            h_2_rrr2_x*inv_rrr2_platform_joint_offset_x;
         /* (L2) first moment about the platform origin */
         const real h_star_t_5 = rrr2_link2_mass*rrr2_platform_point_x;
         const real h_star_t_6 = rrr2_link2_mass*rrr2_platform_point_y;
@@ -574,11 +605,16 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
             rrr2_base_frame_yy*rrr2_base_point_y;
         model->J_1_rrr2_zz[leg] = J_1_rrr2_zz;
         model->J_2_rrr2_zz[leg] = J_2_rrr2_zz;
+        model->Jc_1_rrr2_zz[leg] = Jc_1_rrr2_zz;
         model->Kd_1_rrr2_t_2[leg] = Kd_1_rrr2_t_2;
         model->Kd_1_rrr2_t_3[leg] = Kd_1_rrr2_t_3;
         model->b_rrr2_r0_x[leg] = b_rrr2_r0_x;
         model->b_rrr2_r0_y[leg] = b_rrr2_r0_y;
         model->branch_1_rrr2[leg] = branch_1_rrr2;
+        model->d_Gamma_1_rrr2_t[leg] = d_Gamma_1_rrr2_t;
+        model->d_Gamma_1_rrr2_y[leg] = d_Gamma_1_rrr2_y;
+        model->d_c_rrr2_yy[leg] = d_c_rrr2_yy;
+        model->d_phi_2_rrr2_t[leg] = d_phi_2_rrr2_t;
         model->g_r0_x_2[leg] = g_r0_x_2;
         model->g_r0_y_2[leg] = g_r0_y_2;
         model->h_1_rrr2_x[leg] = h_1_rrr2_x;
@@ -633,7 +669,7 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 315 mul, 209 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 275 mul, 193 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], Z_p_x[LANES], Z_p_y[LANES],
@@ -712,9 +748,14 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_z = s->omega_z[j];
         const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real h_1_rrr_x = m->h_1_rrr_x[i];
@@ -785,49 +826,38 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_rrr_in_base_y - M_ta_t_2*q_rrr_in_base_x;
+        const real M_aa_t = M_ta_t*q_rrr_in_base_y + M_ta_t_2*q_rrr_in_base_x;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr;
@@ -844,11 +874,13 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -859,35 +891,35 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -895,10 +927,10 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (M7) rotational part of Z */
         const real Z_a_t = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
         /* (rrr-V5) reciprocal vector 1 */
-        const real w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
+        const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
         /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3;
+        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
         /* (rrr-V6) reciprocal vector 2 */
         const real w_2_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x
             + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
@@ -916,8 +948,8 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         o->sum[6][k] = U_rrr_in_base_x;  /* total_rrr_x */
         o->sum[7][k] = U_rrr_in_base_y;  /* total_rrr_y */
         o->sum[8][k] = Z_a_t;  /* total_rrr_z */
-        o->entry[0][k] = -w_1_rrr_t_3;
-        o->entry[1][k] = w_1_rrr_t_4;
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
         o->entry[3][k] = w_2_rrr_in_base_x;
         o->entry[4][k] = w_2_rrr_in_base_y;
@@ -958,9 +990,14 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real omega_z = s->omega_z[j];
         const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
         const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
+        const real Jc_1_rrr2_zz = m->Jc_1_rrr2_zz[i];
         const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
         const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
         const real branch_1_rrr2 = m->branch_1_rrr2[i];
+        const real d_Gamma_1_rrr2_t = m->d_Gamma_1_rrr2_t[i];
+        const real d_Gamma_1_rrr2_y = m->d_Gamma_1_rrr2_y[i];
+        const real d_c_rrr2_yy = m->d_c_rrr2_yy[i];
+        const real d_phi_2_rrr2_t = m->d_phi_2_rrr2_t[i];
         const real g_r0_x_2 = m->g_r0_x_2[i];
         const real g_r0_y_2 = m->g_r0_y_2[i];
         const real h_1_rrr2_x = m->h_1_rrr2_x[i];
@@ -1031,47 +1068,36 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
             axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
         const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        const real w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2;
         /* (rrr2-V6) reciprocal vector 2 */
         const real w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x;
-        /* (rrr2-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2;
-        const real d_alpha_2_rrr2_zy = inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 -
-            s_2_rrr2*w_1_rrr2_t;
-        /* (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y;
-        const real d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy;
-        /* (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 -
-            J_1_rrr2_zz*w_1_rrr2_t;
-        const real d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy -
-            d_mu_2_rrr2_zx*s_2_rrr2;
-        /* (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x;
+        const real d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr2_xx = d_alpha_2_rrr2_zx*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx - d_N_1_rrr2_zy*s_2_rrr2) -
-            d_mu_2_rrr2_zx*w_2_rrr2_t;
-        const real d_c_rrr2_xy = d_alpha_2_rrr2_zy*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy + d_N_1_rrr2_zx*s_2_rrr2) -
-            d_mu_2_rrr2_zy*w_2_rrr2_t;
-        /* (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr2_t = d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x +
-            d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x;
+        const real d_c_rrr2_xy = d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y -
+            d_Gamma_1_rrr2_y*w_2_rrr2_t;
+        /* (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr2_t = d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t -
+            inv_r_1_rrr2_r0_y) - d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t;
         const real Q_rrr2_t_2 = R(0.5)*Q_rrr2_t;
-        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
-            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
-        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
+        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
             axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy;
-        const real Q_rrr2_t_5 = 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx;
-        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y +
-            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        const real Q_rrr2_t_7 = 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx;
+        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
+            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
+        const real Q_rrr2_t_5 = d_c_rrr2_yy + 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
+            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr2_t_6*q_rrr2_in_base_x - Q_rrr2_t_5*q_rrr2_in_base_y;
-        const real M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y - Q_rrr2_t_7*q_rrr2_in_base_x;
+        const real M_ta_t_3 = Q_rrr2_t_5*q_rrr2_in_base_y + Q_rrr2_t_6*q_rrr2_in_base_x;
+        const real M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y + Q_rrr2_t_7*q_rrr2_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t_2 = M_ta_t_3*q_rrr2_in_base_y + M_ta_t_4*q_rrr2_in_base_x;
         /* (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
@@ -1090,11 +1116,13 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
             S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-A1) centripetal acceleration of the connection point */
         const real u_1_rrr2_t = S_dot_rrr2_t_2*omega_z;
         const real u_1_rrr2_t_2 = S_dot_rrr2_t*omega_z;
@@ -1105,11 +1133,10 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         /* (rrr2-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr2_o_x = u_1_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_o_y = u_1_rrr2_tip_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+        const real rel_rrr2_o_y = u_1_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr2_o = inv_r_1_rrr2_r0_y*rel_rrr2_o_x;
-        /* (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr2_o_z = g_r1_x_2*h_1_rrr2_y - J_1_rrr2_zz*qdd_1_rrr2_o -
             g_r1_y_2*h_1_rrr2_x;
@@ -1117,25 +1144,25 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
            less gravity */
         const real acc_2_rrr2_o_x = u_1_rrr2_tip_x + g_r1_y_2*s_2_rrr2 - c_2_rrr2*g_r1_x_2;
         const real acc_2_rrr2_o_y = u_1_rrr2_tip_y - c_2_rrr2*g_r1_y_2 - g_r1_x_2*s_2_rrr2;
-        /* (rrr2-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr2_o_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_o_y +
             qdd_1_rrr2_o*r_1_rrr2_r0_x) - qdd_1_rrr2_o;
-        /* (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr2_o_z = J_2_rrr2_zz*alpha_2_rrr2_o_z + acc_2_rrr2_o_y*h_2_rrr2_x -
             acc_2_rrr2_o_x*h_2_rrr2_y;
-        /* (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z;
-        /* (rrr2-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr2-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z;
-        /* (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr2_o_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z);
         const real c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x;
-        /* (rrr2-N34) velocity and gravity terms of the leg force */
+        /* (rrr2-N37) velocity and gravity terms of the leg force */
         const real U_rrr2_in_base_x = -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y -
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
         const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
@@ -1144,10 +1171,10 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real Z_a_t_2 = U_rrr2_in_base_y*q_rrr2_in_base_x -
             U_rrr2_in_base_x*q_rrr2_in_base_y;
         /* (rrr2-V5) reciprocal vector 1 */
-        const real w_1_rrr2_t_3 = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_4 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
+        const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
+        const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
         /* (M10) moment of the column's unit force about the platform origin */
-        const real H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_4 + q_rrr2_in_base_y*w_1_rrr2_t_3;
+        const real H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_2 + q_rrr2_in_base_y*w_1_rrr2_t;
         o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
         o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
         o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
@@ -1157,8 +1184,8 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         o->sum[6][k] = U_rrr2_in_base_x;  /* total_rrr2_x */
         o->sum[7][k] = U_rrr2_in_base_y;  /* total_rrr2_y */
         o->sum[8][k] = Z_a_t_2;  /* total_rrr2_z */
-        o->entry[0][k] = -w_1_rrr2_t_3;
-        o->entry[1][k] = w_1_rrr2_t_4;
+        o->entry[0][k] = -w_1_rrr2_t;
+        o->entry[1][k] = w_1_rrr2_t_2;
         o->entry[2][k] = H_a_1_rrr2_z;
         o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
             unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
@@ -1208,14 +1235,14 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real J_star_t_10 = m->J_star_t_10;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx;
+        const real M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx;
         const real M_tt_xy = total_rrr2_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy;
+        const real M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = total_rrr2_xz - h_star_in_base_y - total_rrr_xz;
+        const real M_ta_xz = total_rrr2_xz + total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_rrr2_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_rrr_zz - J_star_t_10 - total_rrr2_zz;
+        const real M_aa_zz = -J_star_t_10 - total_rrr2_zz - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_rrr2_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_rrr2_y + total_rrr_y;
@@ -1302,7 +1329,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- M: 184 mul, 123 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 148 mul, 107 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
         h_star_in_base_y[LANES], sum[12][LANES];
@@ -1349,12 +1376,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_1_rrr_zz = m->J_1_rrr_zz[i];
         const real J_2_rrr_zz = m->J_2_rrr_zz[i];
+        const real Jc_1_rrr_zz = m->Jc_1_rrr_zz[i];
         const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
         const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
         const real branch_1_rrr = m->branch_1_rrr[i];
-        const real h_2_rrr_x = m->h_2_rrr_x[i];
+        const real d_Gamma_1_rrr_t = m->d_Gamma_1_rrr_t[i];
+        const real d_Gamma_1_rrr_y = m->d_Gamma_1_rrr_y[i];
+        const real d_c_rrr_yy = m->d_c_rrr_yy[i];
+        const real d_phi_2_rrr_t = m->d_phi_2_rrr_t[i];
         const real h_2_rrr_y = m->h_2_rrr_y[i];
         const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
         const real inv_rrr_platform_joint_offset_x = m->inv_rrr_platform_joint_offset_x[i];
@@ -1405,6 +1435,7 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         /* (rrr-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr;
         const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr;
         const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t;
         /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr = 1/rho2_1_rrr;
@@ -1419,50 +1450,38 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_y_rrr_axes2_in_base_y = axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
             axis_y_rrr_axes2_r1_y*rrr_base_frame_yy;
         const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
-        const real w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y;
-        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr;
         /* (rrr-V6) reciprocal vector 2 */
-        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x
-            + r_1_rrr_t*s_2_rrr);
-        /* (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2;
-        const real d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 -
-            s_2_rrr*w_1_rrr_t;
-        /* (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y;
-        const real d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy;
-        /* (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr -
-            J_1_rrr_zz*w_1_rrr_t;
-        const real d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy -
-            d_mu_2_rrr_zx*s_2_rrr;
-        /* (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x;
+        /* (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x;
+        const real d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz -
+            d_Gamma_1_rrr_t_2);
+        /* (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr_xx = d_alpha_2_rrr_zx*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-            d_mu_2_rrr_zx*w_2_rrr_t;
-        const real d_c_rrr_xy = d_alpha_2_rrr_zy*h_2_rrr_y +
-            inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-            d_mu_2_rrr_zy*w_2_rrr_t;
-        /* (rrr-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr_t = d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x +
-            d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x;
+        const real d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y -
+            d_Gamma_1_rrr_y*w_2_rrr_t;
+        /* (rrr-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr_t = d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t -
+            inv_r_1_rrr_r0_y) - d_c_rrr_yy - d_Gamma_2_rrr_x*w_2_rrr_t;
         const real Q_rrr_t_2 = R(0.5)*Q_rrr_t;
-        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
-            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
-        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
+        const real Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y +
             axis_y_rrr_axes2_in_base_x*d_c_rrr_xy;
-        const real Q_rrr_t_5 = 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx;
-        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y +
-            Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        const real Q_rrr_t_7 = 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx;
+        const real Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x -
+            axis_y_rrr_axes2_in_base_y*d_c_rrr_xy;
+        const real Q_rrr_t_5 = d_c_rrr_yy + 2*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
+            Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
+        const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x;
-        const real M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x;
+        const real M_ta_t = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x;
+        const real M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_rrr_in_base_y - M_ta_t_2*q_rrr_in_base_x;
+        const real M_aa_t = M_ta_t*q_rrr_in_base_y + M_ta_t_2*q_rrr_in_base_x;
         o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
         o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
         o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
@@ -1493,12 +1512,15 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const real t_y = s->t_y[j];
         const real R_xx = s->R_xx[j];
         const real R_yx = s->R_yx[j];
-        const real J_1_rrr2_zz = m->J_1_rrr2_zz[i];
         const real J_2_rrr2_zz = m->J_2_rrr2_zz[i];
+        const real Jc_1_rrr2_zz = m->Jc_1_rrr2_zz[i];
         const real Kd_1_rrr2_t_2 = m->Kd_1_rrr2_t_2[i];
         const real Kd_1_rrr2_t_3 = m->Kd_1_rrr2_t_3[i];
         const real branch_1_rrr2 = m->branch_1_rrr2[i];
-        const real h_2_rrr2_x = m->h_2_rrr2_x[i];
+        const real d_Gamma_1_rrr2_t = m->d_Gamma_1_rrr2_t[i];
+        const real d_Gamma_1_rrr2_y = m->d_Gamma_1_rrr2_y[i];
+        const real d_c_rrr2_yy = m->d_c_rrr2_yy[i];
+        const real d_phi_2_rrr2_t = m->d_phi_2_rrr2_t[i];
         const real h_2_rrr2_y = m->h_2_rrr2_y[i];
         const real inv_Kd_1_rrr2_t_5 = m->inv_Kd_1_rrr2_t_5[i];
         const real inv_rrr2_platform_joint_offset_x = m->inv_rrr2_platform_joint_offset_x[i];
@@ -1549,6 +1571,7 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         /* (rrr2-V2) from joint 1 to the connection point, along the links */
         const real r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2;
         const real r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x;
+        const real r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2;
         const real r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t;
         /* (rrr2-K11) cosine of the angle of joint 1 from its reference direction */
         const real inv_rho2_1_rrr2 = 1/rho2_1_rrr2;
@@ -1563,49 +1586,36 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const real axis_y_rrr2_axes2_in_base_y = axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
             axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy;
         const real inv_r_1_rrr2_r0_y = 1/r_1_rrr2_r0_y;
-        const real w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y;
-        const real w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2;
         /* (rrr2-V6) reciprocal vector 2 */
-        const real w_2_rrr2_t =
-            inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*(c_2_rrr2*r_1_rrr2_x +
-            r_1_rrr2_t*s_2_rrr2);
-        /* (rrr2-A18) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2;
-        const real d_alpha_2_rrr2_zy = inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 -
-            s_2_rrr2*w_1_rrr2_t;
-        /* (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y;
-        const real d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy;
-        /* (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1
-           outwards, the force at the connection point left out */
-        const real d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 -
-            J_1_rrr2_zz*w_1_rrr2_t;
-        const real d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy -
-            d_mu_2_rrr2_zx*s_2_rrr2;
-        /* (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+        const real w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x;
+        /* (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x;
+        const real d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz -
+            d_Gamma_1_rrr2_t_2);
+        /* (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_rrr2_xx = d_alpha_2_rrr2_zx*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx - d_N_1_rrr2_zy*s_2_rrr2) -
-            d_mu_2_rrr2_zx*w_2_rrr2_t;
-        const real d_c_rrr2_xy = d_alpha_2_rrr2_zy*h_2_rrr2_y +
-            inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy + d_N_1_rrr2_zx*s_2_rrr2) -
-            d_mu_2_rrr2_zy*w_2_rrr2_t;
-        /* (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rrr2_t = d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x +
-            d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x;
+        const real d_c_rrr2_xy = d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y -
+            d_Gamma_1_rrr2_y*w_2_rrr2_t;
+        /* (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rrr2_t = d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t -
+            inv_r_1_rrr2_r0_y) - d_c_rrr2_yy - d_Gamma_2_rrr2_x*w_2_rrr2_t;
         const real Q_rrr2_t_2 = R(0.5)*Q_rrr2_t;
-        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
-            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
-        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
+        const real Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y +
             axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy;
-        const real Q_rrr2_t_5 = 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx;
-        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y +
-            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        const real Q_rrr2_t_7 = 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx;
+        const real Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x -
+            axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy;
+        const real Q_rrr2_t_5 = d_c_rrr2_yy + 2*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
+            Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
+        const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
         /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rrr2_t_6*q_rrr2_in_base_x - Q_rrr2_t_5*q_rrr2_in_base_y;
-        const real M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y - Q_rrr2_t_7*q_rrr2_in_base_x;
+        const real M_ta_t_3 = Q_rrr2_t_5*q_rrr2_in_base_y + Q_rrr2_t_6*q_rrr2_in_base_x;
+        const real M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y + Q_rrr2_t_7*q_rrr2_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t_2 = M_ta_t_3*q_rrr2_in_base_y + M_ta_t_4*q_rrr2_in_base_x;
         o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
@@ -1648,14 +1658,14 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real J_star_t_10 = m->J_star_t_10;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
-        const real M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx;
+        const real M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx;
         const real M_tt_xy = total_rrr2_xy + total_rrr_xy;
-        const real M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy;
+        const real M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy;
         /* (M2) coupling block of M */
-        const real M_ta_xz = total_rrr2_xz - h_star_in_base_y - total_rrr_xz;
+        const real M_ta_xz = total_rrr2_xz + total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_rrr2_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_rrr_zz - J_star_t_10 - total_rrr2_zz;
+        const real M_aa_zz = -J_star_t_10 - total_rrr2_zz - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
@@ -1727,7 +1737,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 9, w, code, M);
 }
 
-/* ---- Z: 211 mul, 129 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 207 mul, 129 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
@@ -1888,11 +1898,13 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A1) centripetal acceleration of the connection point */
         const real u_1_rrr_t = S_dot_rrr_t_2*omega_z;
         const real u_1_rrr_t_2 = S_dot_rrr_t*omega_z;
@@ -1903,35 +1915,35 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x;
-        /* (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x;
         /* (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x;
         const real acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr;
-        /* (rrr-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr_o_z = inv_rrr_platform_joint_offset_x*(rel_rrr_o_y +
             qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o;
-        /* (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x -
             acc_2_rrr_o_x*h_2_rrr_y;
-        /* (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z;
-        /* (rrr-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z;
-        /* (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr_o_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x - N_1_rrr_o_z);
         const real c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x;
-        /* (rrr-N34) velocity and gravity terms of the leg force */
+        /* (rrr-N37) velocity and gravity terms of the leg force */
         const real U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
@@ -2059,11 +2071,13 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
             S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-A1) centripetal acceleration of the connection point */
         const real u_1_rrr2_t = S_dot_rrr2_t_2*omega_z;
         const real u_1_rrr2_t_2 = S_dot_rrr2_t*omega_z;
@@ -2074,11 +2088,10 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (rrr2-A7) remainder without the acceleration in: acceleration of the connection point left to
            the joint accelerations */
         const real rel_rrr2_o_x = u_1_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_o_y = u_1_rrr2_tip_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+        const real rel_rrr2_o_y = u_1_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A9) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_rrr2_o = inv_r_1_rrr2_r0_y*rel_rrr2_o_x;
-        /* (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with
            link 1, about their reference points */
         const real mu_1_rrr2_o_z = g_r1_x_2*h_1_rrr2_y - J_1_rrr2_zz*qdd_1_rrr2_o -
             g_r1_y_2*h_1_rrr2_x;
@@ -2086,25 +2099,25 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
            less gravity */
         const real acc_2_rrr2_o_x = u_1_rrr2_tip_x + g_r1_y_2*s_2_rrr2 - c_2_rrr2*g_r1_x_2;
         const real acc_2_rrr2_o_y = u_1_rrr2_tip_y - c_2_rrr2*g_r1_y_2 - g_r1_x_2*s_2_rrr2;
-        /* (rrr2-A19) remainder without the acceleration in: angular acceleration of link 2 */
+        /* (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrr2_o_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_o_y +
             qdd_1_rrr2_o*r_1_rrr2_r0_x) - qdd_1_rrr2_o;
-        /* (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_rrr2_o_z = J_2_rrr2_zz*alpha_2_rrr2_o_z + acc_2_rrr2_o_y*h_2_rrr2_x -
             acc_2_rrr2_o_x*h_2_rrr2_y;
-        /* (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1
+        /* (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1
            outwards, the force at the connection point left out */
         const real N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z;
-        /* (rrr2-N29) remainder without the acceleration in: force at the connection point that balances
+        /* (rrr2-N32) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z;
-        /* (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation
+        /* (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation
            and without the mass at the connection point */
         const real c_rrr2_o_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z);
         const real c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x;
-        /* (rrr2-N34) velocity and gravity terms of the leg force */
+        /* (rrr2-N37) velocity and gravity terms of the leg force */
         const real U_rrr2_in_base_x = -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y -
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
         const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
@@ -2498,7 +2511,7 @@ INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code
     deliver(H_of, 9, w, code, H);
 }
 
-/* ---- required: 236 mul, 147 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- required: 232 mul, 147 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
@@ -2680,11 +2693,13 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -2710,7 +2725,7 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -2718,22 +2733,22 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr
             - h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
@@ -2879,11 +2894,13 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
             S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-V5) reciprocal vector 1 */
         const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
         const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
@@ -2901,8 +2918,7 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
             S_ddot_rrr2_y*axis_y_rrr2_axes2_in_base_y;
         /* (rrr2-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_y = S_ddot_rrr2_tip_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+        const real rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A8) acceleration of joint 1 */
         const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
         /* (rrr2-N3) acceleration of the reference point of link 2, less gravity */
@@ -2910,22 +2926,22 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrr2_axes2_in_base_y*gravity_x;
         const real acc_2_rrr2_y = S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
             axis_y_rrr2_axes2_in_base_y*gravity_y;
-        /* (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr2_z = h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) -
             J_1_rrr2_zz*qdd_1_rrr2 - h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2);
-        /* (rrr2-A17) angular acceleration of link 2 */
+        /* (rrr2-A16) angular acceleration of link 2 */
         const real alpha_2_rrr2_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
             qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2;
-        /* (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x -
             acc_2_rrr2_x*h_2_rrr2_y;
-        /* (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z;
-        /* (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z;
-        /* (rrr2-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr2-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr2_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z);
@@ -3561,7 +3577,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 4, w, code, rates);
 }
 
-/* ---- joint_accelerations: 146 mul, 78 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 144 mul, 78 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -3708,9 +3724,11 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y;
         const real a_p_rrr_y = t_ddot_y + alpha_z*q_rrr_in_base_x;
@@ -3721,8 +3739,7 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
         const real rel_rrr_x = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_y - bias_rrr_x -
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_x;
         const real rel_rrr_y = S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x +
-            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-            qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+            S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         const real qdd_2_rrr = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
@@ -3842,9 +3859,11 @@ INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t 
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
             S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-A2) acceleration of the connection point without its centripetal part */
         const real a_p_rrr2_x = t_ddot_x - alpha_z*q_rrr2_in_base_y;
         const real a_p_rrr2_y = t_ddot_y + alpha_z*q_rrr2_in_base_x;
@@ -3855,8 +3874,7 @@ INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t 
         const real rel_rrr2_x = S_ddot_rrr2_x*axis_y_rrr2_axes2_in_base_y - bias_rrr2_x -
             S_ddot_rrr2_y*axis_y_rrr2_axes2_in_base_x;
         const real rel_rrr2_y = S_ddot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
-            S_ddot_rrr2_y*axis_y_rrr2_axes2_in_base_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+            S_ddot_rrr2_y*axis_y_rrr2_axes2_in_base_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A8) acceleration of joint 1 */
         const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
         const real qdd_2_rrr2 = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
@@ -3926,7 +3944,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 4, w, code, accelerations);
 }
 
-/* ---- legs: 212 mul, 122 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
+/* ---- legs: 208 mul, 122 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
         omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
@@ -4084,11 +4102,13 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         const real omega_2_rrr_z =
             inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
             S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr;
+        /* (rrr-V10) centripetal tensor of link 1 */
+        const real W_1_rrr_t = qd_1_rrr*qd_1_rrr;
         /* (rrr-V12) centripetal tensor of link 2 */
         const real W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z;
         /* (rrr-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr_x = -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-            c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x;
+        const real bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x -
+            W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x;
         /* (rrr-V5) reciprocal vector 1 */
         const real w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y;
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
@@ -4109,7 +4129,7 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y;
         /* (rrr-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x;
-        const real rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr;
+        const real rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr;
         /* (rrr-A8) acceleration of joint 1 */
         const real qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x;
         /* (rrr-N3) acceleration of the reference point of link 2, less gravity */
@@ -4117,27 +4137,27 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_rrr_axes2_in_base_y*gravity_x;
         const real acc_2_rrr_y = S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x -
             axis_y_rrr_axes2_in_base_y*gravity_y;
-        /* (rrr-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr_z = h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr
             - h_1_rrr_x*(c_1_rrr*g_r0_y - g_r0_x*s_1_rrr);
-        /* (rrr-A17) angular acceleration of link 2 */
+        /* (rrr-A16) angular acceleration of link 2 */
         const real alpha_2_rrr_z = inv_rrr_platform_joint_offset_x*(rel_rrr_y +
             qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr;
-        /* (rrr-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x -
             acc_2_rrr_x*h_2_rrr_y;
-        /* (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z;
-        /* (rrr-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z;
-        /* (rrr-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr_x = W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y -
             inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x - N_1_rrr_z);
         const real c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x;
-        /* (rrr-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass;
         const real c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass;
         const real c_true_rrr_in_base_x = axis_y_rrr_axes2_in_base_x*c_true_rrr_y +
@@ -4277,11 +4297,13 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
         const real omega_2_rrr2_z =
             inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
             S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2;
+        /* (rrr2-V10) centripetal tensor of link 1 */
+        const real W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2;
         /* (rrr2-V12) centripetal tensor of link 2 */
         const real W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z;
         /* (rrr2-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_rrr2_x = -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-            c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x;
+        const real bias_rrr2_x = -W_2_rrr2_t*rrr2_platform_joint_offset_x -
+            W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x;
         /* (rrr2-V5) reciprocal vector 1 */
         const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
         const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
@@ -4297,8 +4319,7 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
             S_ddot_rrr2_y*axis_y_rrr2_axes2_in_base_y;
         /* (rrr2-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x;
-        const real rel_rrr2_y = S_ddot_rrr2_tip_y +
-            qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2;
+        const real rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2;
         /* (rrr2-A8) acceleration of joint 1 */
         const real qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x;
         /* (rrr2-N3) acceleration of the reference point of link 2, less gravity */
@@ -4306,27 +4327,27 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
             axis_y_rrr2_axes2_in_base_y*gravity_x;
         const real acc_2_rrr2_y = S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
             axis_y_rrr2_axes2_in_base_y*gravity_y;
-        /* (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points */
+        /* (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points */
         const real mu_1_rrr2_z = h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) -
             J_1_rrr2_zz*qdd_1_rrr2 - h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2);
-        /* (rrr2-A17) angular acceleration of link 2 */
+        /* (rrr2-A16) angular acceleration of link 2 */
         const real alpha_2_rrr2_z = inv_rrr2_platform_joint_offset_x*(rel_rrr2_y +
             qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2;
-        /* (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points */
+        /* (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x -
             acc_2_rrr2_x*h_2_rrr2_y;
-        /* (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point
+        /* (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point
            left out */
         const real N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z;
-        /* (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all
+        /* (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
         const real G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z;
-        /* (rrr2-N30) leg force on the platform without actuation and without the mass at the connection
+        /* (rrr2-N33) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_rrr2_x = W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y -
             inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x - N_1_rrr2_z);
         const real c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x;
-        /* (rrr2-N35) leg force on the platform without actuation, the last link's mass included */
+        /* (rrr2-N38) leg force on the platform without actuation, the last link's mass included */
         const real c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass;
         const real c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass;
         const real c_true_rrr2_in_base_x = axis_y_rrr2_axes2_in_base_x*c_true_rrr2_y +

@@ -112,8 +112,9 @@ typedef struct {
     sixbar_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,
             m_star;
     /* legs of type rrr */
-    sixbar_real J_1_rrr_zz[1], J_2_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1], b_rrr_r0_x[1],
-            b_rrr_r0_y[1], branch_1_rrr[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1], h_1_rrr_y[1],
+    sixbar_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
+            b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1], d_Gamma_1_rrr_y[1],
+            d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1], h_1_rrr_y[1],
             h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rrr_platform_joint_offset_x[1],
             inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
             rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
@@ -121,11 +122,13 @@ typedef struct {
             rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
             size_rrr[1];
     /* legs of type rrr2 */
-    sixbar_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Kd_1_rrr2_t_2[1], Kd_1_rrr2_t_3[1], b_rrr2_r0_x[1],
-            b_rrr2_r0_y[1], branch_1_rrr2[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr2_x[1], h_1_rrr2_y[1],
-            h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1], inv_rrr2_platform_joint_offset_x[1],
-            inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1], rrr2_base_frame_xx[1], rrr2_base_frame_xy[1],
-            rrr2_base_frame_yx[1], rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
+    sixbar_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Jc_1_rrr2_zz[1], Kd_1_rrr2_t_2[1], Kd_1_rrr2_t_3[1],
+            b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], d_Gamma_1_rrr2_t[1],
+            d_Gamma_1_rrr2_y[1], d_c_rrr2_yy[1], d_phi_2_rrr2_t[1], g_r0_x_2[1], g_r0_y_2[1],
+            h_1_rrr2_x[1], h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
+            inv_rrr2_platform_joint_offset_x[1], inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1],
+            rrr2_base_frame_xx[1], rrr2_base_frame_xy[1], rrr2_base_frame_yx[1],
+            rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
             rrr2_joint2_offset_x[1], rrr2_link1_mass[1], rrr2_link2_mass[1],
             rrr2_platform_joint_offset_x[1], rrr2_platform_point_x[1], rrr2_platform_point_y[1],
             size_rrr2[1];
@@ -140,12 +143,12 @@ extern const sixbar_real sixbar_HOME_Q[SIXBAR_NJ];
    model is all NaN. */
 int sixbar_prepare(const sixbar_params *params, sixbar_model *model);
 
-/* Inertia matrix M. 184 mul, 123 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 148 mul, 107 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int sixbar_M(const sixbar_model *model, const sixbar_real *X, sixbar_real *M);
 size_t sixbar_M_batch(const sixbar_model *model, size_t n, const sixbar_real *X, sixbar_real *M,
     int *status);
 
-/* Velocity and gravity terms Z. 211 mul, 129 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
+/* Velocity and gravity terms Z. 207 mul, 129 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV). Out:
    Z (NV). */
 int sixbar_Z(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V, sixbar_real
     *Z);
@@ -158,7 +161,7 @@ int sixbar_H(const sixbar_model *model, const sixbar_real *X, sixbar_real *H);
 size_t sixbar_H_batch(const sixbar_model *model, size_t n, const sixbar_real *X, sixbar_real *H,
     int *status);
 
-/* M, Z and H together, sharing the work. 315 mul, 209 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 275 mul, 193 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int sixbar_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
     sixbar_real *M, sixbar_real *Z, sixbar_real *H);
@@ -178,14 +181,14 @@ int sixbar_joint_rates(const sixbar_model *model, const sixbar_real *X, const si
 size_t sixbar_joint_rates_batch(const sixbar_model *model, size_t n, const sixbar_real *X, const
     sixbar_real *V, sixbar_real *rates, int *status);
 
-/* Accelerations of all joints. 146 mul, 78 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 144 mul, 78 add, 4 div, 2 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int sixbar_joint_accelerations(const sixbar_model *model, const sixbar_real *X, const sixbar_real
     *V, const sixbar_real *A, sixbar_real *accelerations);
 size_t sixbar_joint_accelerations_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
     const sixbar_real *V, const sixbar_real *A, sixbar_real *accelerations, int *status);
 
-/* Actuator forces tau for the acceleration A, by Eq. 3. 236 mul, 147 add, 4 div, 2 sqrt, 0 trig;
+/* Actuator forces tau for the acceleration A, by Eq. 3. 232 mul, 147 add, 4 div, 2 sqrt, 0 trig;
    the solution of the linear equations apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
    Out: tau (NU). */
 int sixbar_inverse_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
@@ -194,7 +197,7 @@ size_t sixbar_inverse_dynamics_batch(const sixbar_model *model, size_t n, const 
     const sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real *tau, int
     *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 315 mul, 209 add, 4 div, 2 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 275 mul, 193 add, 4 div, 2 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV). */
 int sixbar_forward_dynamics(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,
@@ -210,7 +213,7 @@ int sixbar_complete_acceleration(const sixbar_model *model, const sixbar_real *X
 size_t sixbar_complete_acceleration_batch(const sixbar_model *model, size_t n, const sixbar_real
     *X, const sixbar_real *V, const sixbar_real *A, sixbar_real *completed, int *status);
 
-/* Force of each leg on the platform at its platform joint, base axes. 212 mul, 122 add, 4 div, 2
+/* Force of each leg on the platform at its platform joint, base axes. 208 mul, 122 add, 4 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
    forces (2 x 3). */
 int sixbar_leg_reactions(const sixbar_model *model, const sixbar_real *X, const sixbar_real *V,

@@ -380,11 +380,22 @@ def _prepare(p):
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
-    # (rrr-V6) reciprocal vector 2
-    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
     # (rrr-G5) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
+    # (rrr-V6) reciprocal vector 2
+    inv_rrr_platform_joint_offset_x = 1.0/rrr_platform_joint_offset_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t = J_2_rrr_zz*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_y = d_Gamma_1_rrr_t + h_2_rrr_x
+    # (rrr-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr_t = h_2_rrr_y*inv_rrr_platform_joint_offset_x
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_yy = (
+    -d_Gamma_1_rrr_y*inv_rrr_platform_joint_offset_x - h_2_rrr_x*inv_rrr_platform_joint_offset_x
+    )
     # (L2) first moment about the platform origin
     h_star_t_3 = rrr_link2_mass*rrr_platform_point_x
     h_star_t_4 = rrr_link2_mass*rrr_platform_point_y
@@ -436,11 +447,23 @@ def _prepare(p):
     rho_tip_2_rrr2_x*rho_tip_2_rrr2_x + rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y
     )
     J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass
-    # (rrr2-V6) reciprocal vector 2
-    inv_rrr2_platform_joint_offset_x = 1.0/rrr2_platform_joint_offset_x
+    # (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1
+    Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz
     # (rrr2-G5) first moment of link 2 about the connection point
     h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass
     h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass
+    # (rrr2-V6) reciprocal vector 2
+    inv_rrr2_platform_joint_offset_x = 1.0/rrr2_platform_joint_offset_x
+    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr2_t = J_2_rrr2_zz*inv_rrr2_platform_joint_offset_x
+    d_Gamma_1_rrr2_y = d_Gamma_1_rrr2_t + h_2_rrr2_x
+    # (rrr2-N6) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_rrr2_t = h_2_rrr2_y*inv_rrr2_platform_joint_offset_x
+    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr2_yy = (
+    -d_Gamma_1_rrr2_y*inv_rrr2_platform_joint_offset_x -
+        h_2_rrr2_x*inv_rrr2_platform_joint_offset_x
+    )
     # (L2) first moment about the platform origin
     h_star_t_5 = rrr2_link2_mass*rrr2_platform_point_x
     h_star_t_6 = rrr2_link2_mass*rrr2_platform_point_y
@@ -489,11 +512,16 @@ def _prepare(p):
         "rrr": {
             "J_1_rrr_zz": np.broadcast_to(J_1_rrr_zz, _rrr),
             "J_2_rrr_zz": np.broadcast_to(J_2_rrr_zz, _rrr),
+            "Jc_1_rrr_zz": np.broadcast_to(Jc_1_rrr_zz, _rrr),
             "Kd_1_rrr_t_2": np.broadcast_to(Kd_1_rrr_t_2, _rrr),
             "Kd_1_rrr_t_3": np.broadcast_to(Kd_1_rrr_t_3, _rrr),
             "b_rrr_r0_x": np.broadcast_to(b_rrr_r0_x, _rrr),
             "b_rrr_r0_y": np.broadcast_to(b_rrr_r0_y, _rrr),
             "branch_1_rrr": np.broadcast_to(branch_1_rrr, _rrr),
+            "d_Gamma_1_rrr_t": np.broadcast_to(d_Gamma_1_rrr_t, _rrr),
+            "d_Gamma_1_rrr_y": np.broadcast_to(d_Gamma_1_rrr_y, _rrr),
+            "d_c_rrr_yy": np.broadcast_to(d_c_rrr_yy, _rrr),
+            "d_phi_2_rrr_t": np.broadcast_to(d_phi_2_rrr_t, _rrr),
             "g_r0_x": np.broadcast_to(g_r0_x, _rrr),
             "g_r0_y": np.broadcast_to(g_r0_y, _rrr),
             "h_1_rrr_x": np.broadcast_to(h_1_rrr_x, _rrr),
@@ -521,11 +549,16 @@ def _prepare(p):
         "rrr2": {
             "J_1_rrr2_zz": np.broadcast_to(J_1_rrr2_zz, _rrr2),
             "J_2_rrr2_zz": np.broadcast_to(J_2_rrr2_zz, _rrr2),
+            "Jc_1_rrr2_zz": np.broadcast_to(Jc_1_rrr2_zz, _rrr2),
             "Kd_1_rrr2_t_2": np.broadcast_to(Kd_1_rrr2_t_2, _rrr2),
             "Kd_1_rrr2_t_3": np.broadcast_to(Kd_1_rrr2_t_3, _rrr2),
             "b_rrr2_r0_x": np.broadcast_to(b_rrr2_r0_x, _rrr2),
             "b_rrr2_r0_y": np.broadcast_to(b_rrr2_r0_y, _rrr2),
             "branch_1_rrr2": np.broadcast_to(branch_1_rrr2, _rrr2),
+            "d_Gamma_1_rrr2_t": np.broadcast_to(d_Gamma_1_rrr2_t, _rrr2),
+            "d_Gamma_1_rrr2_y": np.broadcast_to(d_Gamma_1_rrr2_y, _rrr2),
+            "d_c_rrr2_yy": np.broadcast_to(d_c_rrr2_yy, _rrr2),
+            "d_phi_2_rrr2_t": np.broadcast_to(d_phi_2_rrr2_t, _rrr2),
             "g_r0_x_2": np.broadcast_to(g_r0_x_2, _rrr2),
             "g_r0_y_2": np.broadcast_to(g_r0_y_2, _rrr2),
             "h_1_rrr2_x": np.broadcast_to(h_1_rrr2_x, _rrr2),
@@ -702,7 +735,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 315 mul, 209 add, 4 div, 2 sqrt, 0 trig
+# dynamics: 275 mul, 193 add, 4 div, 2 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -744,7 +777,8 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, g_r0_x, g_r0_y, h_1_rrr_x,
+    J_1_rrr_zz, J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr,
+        d_Gamma_1_rrr_t, d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, g_r0_x, g_r0_y, h_1_rrr_x,
         h_1_rrr_y, h_2_rrr_x, h_2_rrr_y, inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x,
         inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
         rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
@@ -801,43 +835,31 @@ def _dynamics_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x
-    M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t = M_ta_t*q_rrr_in_base_y - M_ta_t_2*q_rrr_in_base_x
+    M_aa_t = M_ta_t*q_rrr_in_base_y + M_ta_t_2*q_rrr_in_base_x
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r1_x = c_1_rrr*g_r0_x + g_r0_y*s_1_rrr
     g_r1_y = c_1_rrr*g_r0_y - g_r0_x*s_1_rrr
@@ -856,13 +878,12 @@ def _dynamics_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -870,40 +891,40 @@ def _dynamics_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
     Z_a_t = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y
     # (rrr-V5) reciprocal vector 1
-    w_1_rrr_t_3 = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
-    w_1_rrr_t_4 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
     # (M8) moment of the column's unit force about the platform origin
-    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_4 + q_rrr_in_base_y*w_1_rrr_t_3
+    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
     # (rrr-V6) reciprocal vector 2
     w_2_rrr_in_base_x = (
     axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
@@ -918,7 +939,7 @@ def _dynamics_rrr(c, k, x, s, f):
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (
     ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t, M_ta_t_2, M_aa_t, U_rrr_in_base_x,
-        U_rrr_in_base_y, Z_a_t,), (-w_1_rrr_t_3, w_1_rrr_t_4, H_a_1_rrr_z, w_2_rrr_in_base_x,
+        U_rrr_in_base_y, Z_a_t,), (-w_1_rrr_t, w_1_rrr_t_2, H_a_1_rrr_z, w_2_rrr_in_base_x,
         w_2_rrr_in_base_y, H_a_2_rrr_z,),
     )
 
@@ -926,7 +947,8 @@ def _dynamics_rrr(c, k, x, s, f):
 def _dynamics_rrr2(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, g_r0_x_2, g_r0_y_2,
+    J_1_rrr2_zz, J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2,
+        d_Gamma_1_rrr2_t, d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, g_r0_x_2, g_r0_y_2,
         h_1_rrr2_x, h_1_rrr2_y, h_2_rrr2_x, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
         inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
         rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
@@ -984,43 +1006,31 @@ def _dynamics_rrr2(c, k, x, s, f):
     axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
     )
     inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2
     # (rrr2-V6) reciprocal vector 2
     w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
-    # (rrr2-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2
-    d_alpha_2_rrr2_zy = (
-    inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 - s_2_rrr2*w_1_rrr2_t
-    )
-    # (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y
-    d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy
-    # (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 - J_1_rrr2_zz*w_1_rrr2_t
-    d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy - d_mu_2_rrr2_zx*s_2_rrr2
-    # (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_xx = (
-    d_alpha_2_rrr2_zx*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx -
-        d_N_1_rrr2_zy*s_2_rrr2) - d_mu_2_rrr2_zx*w_2_rrr2_t
-    )
+    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
+    d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_rrr2_xy = (
-    d_alpha_2_rrr2_zy*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy +
-        d_N_1_rrr2_zx*s_2_rrr2) - d_mu_2_rrr2_zy*w_2_rrr2_t
+    d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
     )
-    # (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr2_t = (
-    d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x + d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x
+    d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) - d_c_rrr2_yy
+        - d_Gamma_2_rrr2_x*w_2_rrr2_t
     )
     Q_rrr2_t_2 = 0.5*Q_rrr2_t
-    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-    Q_rrr2_t_5 = 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx
-    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-    Q_rrr2_t_7 = 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx
+    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
+    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
+    Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr2_t_6*q_rrr2_in_base_x - Q_rrr2_t_5*q_rrr2_in_base_y
-    M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y - Q_rrr2_t_7*q_rrr2_in_base_x
+    M_ta_t_3 = Q_rrr2_t_5*q_rrr2_in_base_y + Q_rrr2_t_6*q_rrr2_in_base_x
+    M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y + Q_rrr2_t_7*q_rrr2_in_base_x
     # (M3) rotational block of M
     M_aa_t_2 = M_ta_t_3*q_rrr2_in_base_y + M_ta_t_4*q_rrr2_in_base_x
     # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
@@ -1041,12 +1051,13 @@ def _dynamics_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
         S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-A1) centripetal acceleration of the connection point
     u_1_rrr2_t = S_dot_rrr2_t_2*omega_z
@@ -1059,33 +1070,33 @@ def _dynamics_rrr2(c, k, x, s, f):
     )
     # (rrr2-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr2_o_x = u_1_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_o_y = u_1_rrr2_tip_y + qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+    rel_rrr2_o_y = u_1_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     # (rrr2-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr2_o = inv_r_1_rrr2_r0_y*rel_rrr2_o_x
-    # (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_o_z = g_r1_x_2*h_1_rrr2_y - J_1_rrr2_zz*qdd_1_rrr2_o - g_r1_y_2*h_1_rrr2_x
     # (rrr2-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr2_o_x = u_1_rrr2_tip_x + g_r1_y_2*s_2_rrr2 - c_2_rrr2*g_r1_x_2
     acc_2_rrr2_o_y = u_1_rrr2_tip_y - c_2_rrr2*g_r1_y_2 - g_r1_x_2*s_2_rrr2
-    # (rrr2-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr2_o_z = (
     inv_rrr2_platform_joint_offset_x*(rel_rrr2_o_y + qdd_1_rrr2_o*r_1_rrr2_r0_x) - qdd_1_rrr2_o
     )
-    # (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_o_z = (
     J_2_rrr2_zz*alpha_2_rrr2_o_z + acc_2_rrr2_o_y*h_2_rrr2_x - acc_2_rrr2_o_x*h_2_rrr2_y
     )
-    # (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-    # (rrr2-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-    # (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_o_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
         inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
     )
     c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-    # (rrr2-N34) velocity and gravity terms of the leg force
+    # (rrr2-N37) velocity and gravity terms of the leg force
     U_rrr2_in_base_x = (
     -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
     )
@@ -1095,14 +1106,14 @@ def _dynamics_rrr2(c, k, x, s, f):
     # (M7) rotational part of Z
     Z_a_t_2 = U_rrr2_in_base_y*q_rrr2_in_base_x - U_rrr2_in_base_x*q_rrr2_in_base_y
     # (rrr2-V5) reciprocal vector 1
-    w_1_rrr2_t_3 = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_4 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
+    w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
+    w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y
     # (M10) moment of the column's unit force about the platform origin
-    H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_4 + q_rrr2_in_base_y*w_1_rrr2_t_3
+    H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_2 + q_rrr2_in_base_y*w_1_rrr2_t
     ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
     return (
     ok, (Q_rrr2_t_5, Q_rrr2_t_6, Q_rrr2_t_7, M_ta_t_3, M_ta_t_4, M_aa_t_2, U_rrr2_in_base_x,
-        U_rrr2_in_base_y, Z_a_t_2,), (-w_1_rrr2_t_3, w_1_rrr2_t_4, H_a_1_rrr2_z,),
+        U_rrr2_in_base_y, Z_a_t_2,), (-w_1_rrr2_t, w_1_rrr2_t_2, H_a_1_rrr2_z,),
     )
 
 
@@ -1115,14 +1126,14 @@ def _dynamics_after(c, s, t, f):
         total_rrr2_xz, total_rrr2_yz, total_rrr2_zz, total_rrr2_x, total_rrr2_y, total_rrr2_z,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx
+    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
     M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy
+    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = total_rrr2_xz - h_star_in_base_y - total_rrr_xz
+    M_ta_xz = total_rrr2_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rrr2_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_rrr_zz - J_star_t_10 - total_rrr2_zz
+    M_aa_zz = -J_star_t_10 - total_rrr2_zz - total_rrr_zz
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rrr2_x + total_rrr_x
     Z_t_y = Z_p_y + total_rrr2_y + total_rrr_y
@@ -1135,7 +1146,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 184 mul, 123 add, 4 div, 2 sqrt, 0 trig
+# M: 148 mul, 107 add, 4 div, 2 sqrt, 0 trig
 def _M_before(c, X, f):
     sin = f.sin
     cos = f.cos
@@ -1158,11 +1169,12 @@ def _M_before(c, X, f):
 def _M_rrr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr_zz, J_2_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, h_2_rrr_x, h_2_rrr_y,
-        inv_Kd_1_rrr_t_5, inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t,
-        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
-        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
-        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    J_2_rrr_zz, Jc_1_rrr_zz, Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, d_Gamma_1_rrr_t,
+        d_Gamma_1_rrr_y, d_c_rrr_yy, d_phi_2_rrr_t, h_2_rrr_y, inv_Kd_1_rrr_t_5,
+        inv_rrr_platform_joint_offset_x, inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx,
+        rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy, rrr_base_point_x,
+        rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x, rrr_platform_point_x,
+        rrr_platform_point_y, size_rrr,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rrr-K1) from the base point to the connection point
@@ -1198,6 +1210,7 @@ def _M_rrr(c, k, x, s, f):
     # (rrr-V2) from joint 1 to the connection point, along the links
     r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
     r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_x = c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr
     r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
     # (rrr-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr = 1.0/rho2_1_rrr
@@ -1214,45 +1227,31 @@ def _M_rrr(c, k, x, s, f):
     axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
     )
     inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
-    w_1_rrr_t = c_2_rrr*inv_r_1_rrr_r0_y
-    w_1_rrr_t_2 = inv_r_1_rrr_r0_y*s_2_rrr
     # (rrr-V6) reciprocal vector 2
-    w_2_rrr_t = (
-    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
-    )
-    # (rrr-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr_zx = w_2_rrr_t - c_2_rrr*w_1_rrr_t - s_2_rrr*w_1_rrr_t_2
-    d_alpha_2_rrr_zy = inv_rrr_platform_joint_offset_x + c_2_rrr*w_1_rrr_t_2 - s_2_rrr*w_1_rrr_t
-    # (rrr-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr_zx = J_2_rrr_zz*d_alpha_2_rrr_zx - h_2_rrr_y
-    d_mu_2_rrr_zy = h_2_rrr_x + J_2_rrr_zz*d_alpha_2_rrr_zy
-    # (rrr-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr_zx = c_2_rrr*d_mu_2_rrr_zx + d_mu_2_rrr_zy*s_2_rrr - J_1_rrr_zz*w_1_rrr_t
-    d_N_1_rrr_zy = J_1_rrr_zz*w_1_rrr_t_2 + c_2_rrr*d_mu_2_rrr_zy - d_mu_2_rrr_zx*s_2_rrr
-    # (rrr-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr_xx = (
-    d_alpha_2_rrr_zx*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zx - d_N_1_rrr_zy*s_2_rrr) -
-        d_mu_2_rrr_zx*w_2_rrr_t
-    )
-    d_c_rrr_xy = (
-    d_alpha_2_rrr_zy*h_2_rrr_y + inv_r_1_rrr_r0_y*(c_2_rrr*d_N_1_rrr_zy + d_N_1_rrr_zx*s_2_rrr) -
-        d_mu_2_rrr_zy*w_2_rrr_t
-    )
-    # (rrr-N33) inertia of the leg at the connection point, without the mass gathered there
+    w_2_rrr_t = inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*r_1_rrr_r0_x
+    # (rrr-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr_t_2 = d_Gamma_1_rrr_t*r_1_rrr_r0_x
+    d_Gamma_1_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(Jc_1_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr_x = -h_2_rrr_y - inv_r_1_rrr_r0_y*(J_2_rrr_zz - d_Gamma_1_rrr_t_2)
+    # (rrr-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_rrr_xy = d_phi_2_rrr_t + d_Gamma_1_rrr_y*inv_r_1_rrr_r0_y - d_Gamma_1_rrr_y*w_2_rrr_t
+    # (rrr-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr_t = (
-    d_c_rrr_xx + d_alpha_2_rrr_zy*h_2_rrr_x + d_mu_2_rrr_zy*inv_rrr_platform_joint_offset_x
+    d_Gamma_1_rrr_x*inv_r_1_rrr_r0_y + h_2_rrr_y*(w_2_rrr_t - inv_r_1_rrr_r0_y) - d_c_rrr_yy -
+        d_Gamma_2_rrr_x*w_2_rrr_t
     )
     Q_rrr_t_2 = 0.5*Q_rrr_t
-    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
-    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
-    Q_rrr_t_5 = 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_x - d_c_rrr_xx
-    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_y + Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
-    Q_rrr_t_7 = 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_y - d_c_rrr_xx
+    Q_rrr_t_3 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_y + axis_y_rrr_axes2_in_base_x*d_c_rrr_xy
+    Q_rrr_t_4 = Q_rrr_t_2*axis_y_rrr_axes2_in_base_x - axis_y_rrr_axes2_in_base_y*d_c_rrr_xy
+    Q_rrr_t_5 = d_c_rrr_yy + 2.0*Q_rrr_t_3*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x + Q_rrr_t_4*axis_y_rrr_axes2_in_base_y
+    Q_rrr_t_7 = d_c_rrr_yy + 2.0*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t = Q_rrr_t_5*q_rrr_in_base_y - Q_rrr_t_6*q_rrr_in_base_x
-    M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y - Q_rrr_t_7*q_rrr_in_base_x
+    M_ta_t = Q_rrr_t_5*q_rrr_in_base_y + Q_rrr_t_6*q_rrr_in_base_x
+    M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x
     # (M3) rotational block of M
-    M_aa_t = M_ta_t*q_rrr_in_base_y - M_ta_t_2*q_rrr_in_base_x
+    M_aa_t = M_ta_t*q_rrr_in_base_y + M_ta_t_2*q_rrr_in_base_x
     ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
     return (ok, (Q_rrr_t_5, Q_rrr_t_6, Q_rrr_t_7, M_ta_t, M_ta_t_2, M_aa_t,), (),)
 
@@ -1260,10 +1259,11 @@ def _M_rrr(c, k, x, s, f):
 def _M_rrr2(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rrr2_zz, J_2_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, h_2_rrr2_x, h_2_rrr2_y,
-        inv_Kd_1_rrr2_t_5, inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t,
-        rrr2_base_frame_xx, rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy,
-        rrr2_base_point_x, rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
+    J_2_rrr2_zz, Jc_1_rrr2_zz, Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, d_Gamma_1_rrr2_t,
+        d_Gamma_1_rrr2_y, d_c_rrr2_yy, d_phi_2_rrr2_t, h_2_rrr2_y, inv_Kd_1_rrr2_t_5,
+        inv_rrr2_platform_joint_offset_x, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx,
+        rrr2_base_frame_xy, rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x,
+        rrr2_base_point_y, rrr2_joint2_offset_x, rrr2_platform_joint_offset_x,
         rrr2_platform_point_x, rrr2_platform_point_y, size_rrr2,
     ) = k
     t_x, t_y, R_xx, R_yx = s
@@ -1300,6 +1300,7 @@ def _M_rrr2(c, k, x, s, f):
     # (rrr2-V2) from joint 1 to the connection point, along the links
     r_1_rrr2_t = rrr2_platform_joint_offset_x*s_2_rrr2
     r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+    r_1_rrr2_r0_x = c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2
     r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*r_1_rrr2_t
     # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
     inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
@@ -1316,45 +1317,31 @@ def _M_rrr2(c, k, x, s, f):
     axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx + axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy
     )
     inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
-    w_1_rrr2_t = c_2_rrr2*inv_r_1_rrr2_r0_y
-    w_1_rrr2_t_2 = inv_r_1_rrr2_r0_y*s_2_rrr2
     # (rrr2-V6) reciprocal vector 2
-    w_2_rrr2_t = (
-    inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*(c_2_rrr2*r_1_rrr2_x + r_1_rrr2_t*s_2_rrr2)
-    )
-    # (rrr2-A18) coefficient of the acceleration in: angular acceleration of link 2
-    d_alpha_2_rrr2_zx = w_2_rrr2_t - c_2_rrr2*w_1_rrr2_t - s_2_rrr2*w_1_rrr2_t_2
-    d_alpha_2_rrr2_zy = (
-    inv_rrr2_platform_joint_offset_x + c_2_rrr2*w_1_rrr2_t_2 - s_2_rrr2*w_1_rrr2_t
-    )
-    # (rrr2-N11) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_rrr2_zx = J_2_rrr2_zz*d_alpha_2_rrr2_zx - h_2_rrr2_y
-    d_mu_2_rrr2_zy = h_2_rrr2_x + J_2_rrr2_zz*d_alpha_2_rrr2_zy
-    # (rrr2-N22) coefficient of the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
-    d_N_1_rrr2_zx = c_2_rrr2*d_mu_2_rrr2_zx + d_mu_2_rrr2_zy*s_2_rrr2 - J_1_rrr2_zz*w_1_rrr2_t
-    d_N_1_rrr2_zy = J_1_rrr2_zz*w_1_rrr2_t_2 + c_2_rrr2*d_mu_2_rrr2_zy - d_mu_2_rrr2_zx*s_2_rrr2
-    # (rrr2-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    d_c_rrr2_xx = (
-    d_alpha_2_rrr2_zx*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zx -
-        d_N_1_rrr2_zy*s_2_rrr2) - d_mu_2_rrr2_zx*w_2_rrr2_t
-    )
+    w_2_rrr2_t = inv_r_1_rrr2_r0_y*inv_rrr2_platform_joint_offset_x*r_1_rrr2_r0_x
+    # (rrr2-N28) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
+    d_Gamma_1_rrr2_t_2 = d_Gamma_1_rrr2_t*r_1_rrr2_r0_x
+    d_Gamma_1_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(Jc_1_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N19) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_rrr2_x = -h_2_rrr2_y - inv_r_1_rrr2_r0_y*(J_2_rrr2_zz - d_Gamma_1_rrr2_t_2)
+    # (rrr2-N34) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_rrr2_xy = (
-    d_alpha_2_rrr2_zy*h_2_rrr2_y + inv_r_1_rrr2_r0_y*(c_2_rrr2*d_N_1_rrr2_zy +
-        d_N_1_rrr2_zx*s_2_rrr2) - d_mu_2_rrr2_zy*w_2_rrr2_t
+    d_phi_2_rrr2_t + d_Gamma_1_rrr2_y*inv_r_1_rrr2_r0_y - d_Gamma_1_rrr2_y*w_2_rrr2_t
     )
-    # (rrr2-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rrr2-N36) inertia of the leg at the connection point, without the mass gathered there
     Q_rrr2_t = (
-    d_c_rrr2_xx + d_alpha_2_rrr2_zy*h_2_rrr2_x + d_mu_2_rrr2_zy*inv_rrr2_platform_joint_offset_x
+    d_Gamma_1_rrr2_x*inv_r_1_rrr2_r0_y + h_2_rrr2_y*(w_2_rrr2_t - inv_r_1_rrr2_r0_y) - d_c_rrr2_yy
+        - d_Gamma_2_rrr2_x*w_2_rrr2_t
     )
     Q_rrr2_t_2 = 0.5*Q_rrr2_t
-    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
-    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
-    Q_rrr2_t_5 = 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x - d_c_rrr2_xx
-    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
-    Q_rrr2_t_7 = 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y - d_c_rrr2_xx
+    Q_rrr2_t_3 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_y + axis_y_rrr2_axes2_in_base_x*d_c_rrr2_xy
+    Q_rrr2_t_4 = Q_rrr2_t_2*axis_y_rrr2_axes2_in_base_x - axis_y_rrr2_axes2_in_base_y*d_c_rrr2_xy
+    Q_rrr2_t_5 = d_c_rrr2_yy + 2.0*Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x + Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y
+    Q_rrr2_t_7 = d_c_rrr2_yy + 2.0*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x
     # (M2) coupling block of M
-    M_ta_t_3 = Q_rrr2_t_6*q_rrr2_in_base_x - Q_rrr2_t_5*q_rrr2_in_base_y
-    M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y - Q_rrr2_t_7*q_rrr2_in_base_x
+    M_ta_t_3 = Q_rrr2_t_5*q_rrr2_in_base_y + Q_rrr2_t_6*q_rrr2_in_base_x
+    M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y + Q_rrr2_t_7*q_rrr2_in_base_x
     # (M3) rotational block of M
     M_aa_t_2 = M_ta_t_3*q_rrr2_in_base_y + M_ta_t_4*q_rrr2_in_base_x
     ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
@@ -1369,21 +1356,21 @@ def _M_after(c, s, t, f):
         total_rrr2_xx, total_rrr2_xy, total_rrr2_yy, total_rrr2_xz, total_rrr2_yz, total_rrr2_zz,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = m_star + total_rrr2_xx + total_rrr_xx
+    M_tt_xx = m_star - total_rrr2_xx - total_rrr_xx
     M_tt_xy = total_rrr2_xy + total_rrr_xy
-    M_tt_yy = m_star + total_rrr2_yy + total_rrr_yy
+    M_tt_yy = m_star - total_rrr2_yy - total_rrr_yy
     # (M2) coupling block of M
-    M_ta_xz = total_rrr2_xz - h_star_in_base_y - total_rrr_xz
+    M_ta_xz = total_rrr2_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rrr2_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = total_rrr_zz - J_star_t_10 - total_rrr2_zz
+    M_aa_zz = -J_star_t_10 - total_rrr2_zz - total_rrr_zz
     ok = True
     return (
     ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, M_ta_xz, M_ta_xz, M_ta_yz, M_ta_yz, M_aa_zz,),
     )
 
 
-# Z: 211 mul, 129 add, 4 div, 2 sqrt, 0 trig
+# Z: 207 mul, 129 add, 4 div, 2 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     sin = f.sin
     cos = f.cos
@@ -1494,13 +1481,12 @@ def _Z_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-A1) centripetal acceleration of the connection point
     u_1_rrr_t = S_dot_rrr_t_2*omega_z
     u_1_rrr_t_2 = S_dot_rrr_t*omega_z
@@ -1508,31 +1494,31 @@ def _Z_rrr(c, k, x, s, f):
     u_1_rrr_tip_y = -axis_y_rrr_axes2_in_base_x*u_1_rrr_t - axis_y_rrr_axes2_in_base_y*u_1_rrr_t_2
     # (rrr-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr_o_x = u_1_rrr_tip_x - bias_rrr_x
-    rel_rrr_o_y = u_1_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_o_y = u_1_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr_o = inv_r_1_rrr_r0_y*rel_rrr_o_x
-    # (rrr-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_o_z = g_r1_x*h_1_rrr_y - J_1_rrr_zz*qdd_1_rrr_o - g_r1_y*h_1_rrr_x
     # (rrr-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr_o_x = u_1_rrr_tip_x + g_r1_y*s_2_rrr - c_2_rrr*g_r1_x
     acc_2_rrr_o_y = u_1_rrr_tip_y - c_2_rrr*g_r1_y - g_r1_x*s_2_rrr
-    # (rrr-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr_o_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_o_y + qdd_1_rrr_o*r_1_rrr_r0_x) - qdd_1_rrr_o
     )
-    # (rrr-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_o_z = J_2_rrr_zz*alpha_2_rrr_o_z + acc_2_rrr_o_y*h_2_rrr_x - acc_2_rrr_o_x*h_2_rrr_y
-    # (rrr-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_o_z = mu_1_rrr_o_z + mu_2_rrr_o_z
-    # (rrr-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_o_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_o_z
-    # (rrr-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr_o_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_o_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_o_t*r_1_rrr_r0_x -
         N_1_rrr_o_z)
     )
     c_rrr_o_y = W_2_rrr_t*h_2_rrr_y - G_rrr_o_t - alpha_2_rrr_o_z*h_2_rrr_x
-    # (rrr-N34) velocity and gravity terms of the leg force
+    # (rrr-N37) velocity and gravity terms of the leg force
     U_rrr_in_base_x = -axis_y_rrr_axes2_in_base_x*c_rrr_o_y - axis_y_rrr_axes2_in_base_y*c_rrr_o_x
     U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x - axis_y_rrr_axes2_in_base_y*c_rrr_o_y
     # (M7) rotational part of Z
@@ -1620,12 +1606,13 @@ def _Z_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
         S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-A1) centripetal acceleration of the connection point
     u_1_rrr2_t = S_dot_rrr2_t_2*omega_z
@@ -1638,33 +1625,33 @@ def _Z_rrr2(c, k, x, s, f):
     )
     # (rrr2-A7) remainder without the acceleration in: acceleration of the connection point left to the joint accelerations
     rel_rrr2_o_x = u_1_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_o_y = u_1_rrr2_tip_y + qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+    rel_rrr2_o_y = u_1_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     # (rrr2-A9) remainder without the acceleration in: acceleration of joint 1
     qdd_1_rrr2_o = inv_r_1_rrr2_r0_y*rel_rrr2_o_x
-    # (rrr2-N20) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N24) remainder without the acceleration in: inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_o_z = g_r1_x_2*h_1_rrr2_y - J_1_rrr2_zz*qdd_1_rrr2_o - g_r1_y_2*h_1_rrr2_x
     # (rrr2-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_rrr2_o_x = u_1_rrr2_tip_x + g_r1_y_2*s_2_rrr2 - c_2_rrr2*g_r1_x_2
     acc_2_rrr2_o_y = u_1_rrr2_tip_y - c_2_rrr2*g_r1_y_2 - g_r1_x_2*s_2_rrr2
-    # (rrr2-A19) remainder without the acceleration in: angular acceleration of link 2
+    # (rrr2-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrr2_o_z = (
     inv_rrr2_platform_joint_offset_x*(rel_rrr2_o_y + qdd_1_rrr2_o*r_1_rrr2_r0_x) - qdd_1_rrr2_o
     )
-    # (rrr2-N12) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N17) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_o_z = (
     J_2_rrr2_zz*alpha_2_rrr2_o_z + acc_2_rrr2_o_y*h_2_rrr2_x - acc_2_rrr2_o_x*h_2_rrr2_y
     )
-    # (rrr2-N23) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N26) remainder without the acceleration in: moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_o_z = mu_1_rrr2_o_z + mu_2_rrr2_o_z
-    # (rrr2-N29) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N32) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_o_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_o_z
-    # (rrr2-N32) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N35) remainder without the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_o_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_o_z*h_2_rrr2_y -
         inv_r_1_rrr2_r0_y*(G_rrr2_o_t*r_1_rrr2_r0_x - N_1_rrr2_o_z)
     )
     c_rrr2_o_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_o_t - alpha_2_rrr2_o_z*h_2_rrr2_x
-    # (rrr2-N34) velocity and gravity terms of the leg force
+    # (rrr2-N37) velocity and gravity terms of the leg force
     U_rrr2_in_base_x = (
     -axis_y_rrr2_axes2_in_base_x*c_rrr2_o_y - axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x
     )
@@ -1855,7 +1842,7 @@ def _H_rrr2(c, k, x, s, f):
     return (ok, (), (-w_1_rrr2_t, w_1_rrr2_t_2, H_a_1_rrr2_z,),)
 
 
-# required: 236 mul, 147 add, 4 div, 2 sqrt, 0 trig
+# required: 232 mul, 147 add, 4 div, 2 sqrt, 0 trig
 def _required_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -1982,13 +1969,12 @@ def _required_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -2019,7 +2005,7 @@ def _required_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -2029,22 +2015,22 @@ def _required_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y
         - g_r0_x*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
@@ -2138,12 +2124,13 @@ def _required_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
         S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-V5) reciprocal vector 1
     w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
@@ -2164,7 +2151,7 @@ def _required_rrr2(c, k, x, s, f):
     )
     # (rrr2-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_y = S_ddot_rrr2_tip_y + qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+    rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     # (rrr2-A8) acceleration of joint 1
     qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
     # (rrr2-N3) acceleration of the reference point of link 2, less gravity
@@ -2176,22 +2163,22 @@ def _required_rrr2(c, k, x, s, f):
     S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
         axis_y_rrr2_axes2_in_base_y*gravity_y
     )
-    # (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_z = (
     h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
         h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
     )
-    # (rrr2-A17) angular acceleration of link 2
+    # (rrr2-A16) angular acceleration of link 2
     alpha_2_rrr2_z = (
     inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
     )
-    # (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-    # (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-    # (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-    # (rrr2-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y - inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x
         - N_1_rrr2_z)
@@ -2502,7 +2489,7 @@ def _joint_rates_rrr2(c, k, x, s, f):
     return (ok, (), (-qd_1_rrr2, qd_2_rrr2,),)
 
 
-# joint_accelerations: 146 mul, 78 add, 4 div, 2 sqrt, 0 trig
+# joint_accelerations: 144 mul, 78 add, 4 div, 2 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2608,10 +2595,12 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr_x = (
     -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
+        W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     )
     # (rrr-A2) acceleration of the connection point without its centripetal part
     a_p_rrr_x = t_ddot_x - alpha_z*q_rrr_in_base_y
@@ -2625,7 +2614,7 @@ def _joint_accelerations_rrr(c, k, x, s, f):
     )
     rel_rrr_y = (
     S_ddot_rrr_x*axis_y_rrr_axes2_in_base_x + S_ddot_rrr_y*axis_y_rrr_axes2_in_base_y +
-        qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+        W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     )
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
@@ -2709,10 +2698,12 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
         S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
     -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+        W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-A2) acceleration of the connection point without its centripetal part
     a_p_rrr2_x = t_ddot_x - alpha_z*q_rrr2_in_base_y
@@ -2727,7 +2718,7 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     )
     rel_rrr2_y = (
     S_ddot_rrr2_x*axis_y_rrr2_axes2_in_base_x + S_ddot_rrr2_y*axis_y_rrr2_axes2_in_base_y +
-        qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+        W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     )
     # (rrr2-A8) acceleration of joint 1
     qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
@@ -2736,7 +2727,7 @@ def _joint_accelerations_rrr2(c, k, x, s, f):
     return (ok, (), (-qdd_1_rrr2, qdd_2_rrr2,),)
 
 
-# legs: 212 mul, 122 add, 4 div, 2 sqrt, 0 trig
+# legs: 208 mul, 122 add, 4 div, 2 sqrt, 0 trig
 def _legs_before(c, X, V, A, f):
     sin = f.sin
     cos = f.cos
@@ -2847,13 +2838,12 @@ def _legs_rrr(c, k, x, s, f):
     inv_rrr_platform_joint_offset_x*(S_dot_rrr_x*axis_y_rrr_axes2_in_base_x +
         S_dot_rrr_y*axis_y_rrr_axes2_in_base_y + qd_1_rrr*r_1_rrr_r0_x) - qd_1_rrr
     )
+    # (rrr-V10) centripetal tensor of link 1
+    W_1_rrr_t = qd_1_rrr*qd_1_rrr
     # (rrr-V12) centripetal tensor of link 2
     W_2_rrr_t = omega_2_rrr_z*omega_2_rrr_z
     # (rrr-A5) acceleration of the connection point at zero joint accelerations
-    bias_rrr_x = (
-    -omega_2_rrr_z*omega_2_rrr_z*rrr_platform_joint_offset_x -
-        c_2_rrr*qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x
-    )
+    bias_rrr_x = -W_2_rrr_t*rrr_platform_joint_offset_x - W_1_rrr_t*c_2_rrr*rrr_joint2_offset_x
     # (rrr-V5) reciprocal vector 1
     w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
     w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
@@ -2880,7 +2870,7 @@ def _legs_rrr(c, k, x, s, f):
     )
     # (rrr-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr_x = S_ddot_rrr_tip_x - bias_rrr_x
-    rel_rrr_y = S_ddot_rrr_tip_y + qd_1_rrr*qd_1_rrr*rrr_joint2_offset_x*s_2_rrr
+    rel_rrr_y = S_ddot_rrr_tip_y + W_1_rrr_t*rrr_joint2_offset_x*s_2_rrr
     # (rrr-A8) acceleration of joint 1
     qdd_1_rrr = inv_r_1_rrr_r0_y*rel_rrr_x
     # (rrr-N3) acceleration of the reference point of link 2, less gravity
@@ -2890,28 +2880,28 @@ def _legs_rrr(c, k, x, s, f):
     acc_2_rrr_y = (
     S_ddot_rrr_tip_y - axis_y_rrr_axes2_in_base_x*gravity_x - axis_y_rrr_axes2_in_base_y*gravity_y
     )
-    # (rrr-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr_z = (
     h_1_rrr_y*(c_1_rrr*g_r0_x + g_r0_y*s_1_rrr) - J_1_rrr_zz*qdd_1_rrr - h_1_rrr_x*(c_1_rrr*g_r0_y
         - g_r0_x*s_1_rrr)
     )
-    # (rrr-A17) angular acceleration of link 2
+    # (rrr-A16) angular acceleration of link 2
     alpha_2_rrr_z = (
     inv_rrr_platform_joint_offset_x*(rel_rrr_y + qdd_1_rrr*r_1_rrr_r0_x) - qdd_1_rrr
     )
-    # (rrr-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr_z = J_2_rrr_zz*alpha_2_rrr_z + acc_2_rrr_y*h_2_rrr_x - acc_2_rrr_x*h_2_rrr_y
-    # (rrr-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr_z = mu_1_rrr_z + mu_2_rrr_z
-    # (rrr-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr_t = inv_rrr_platform_joint_offset_x*mu_2_rrr_z
-    # (rrr-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr_x = (
     W_2_rrr_t*h_2_rrr_x + alpha_2_rrr_z*h_2_rrr_y - inv_r_1_rrr_r0_y*(G_rrr_t*r_1_rrr_r0_x -
         N_1_rrr_z)
     )
     c_rrr_y = W_2_rrr_t*h_2_rrr_y - G_rrr_t - alpha_2_rrr_z*h_2_rrr_x
-    # (rrr-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr_x = c_rrr_x - acc_2_rrr_x*rrr_link2_mass
     c_true_rrr_y = c_rrr_y - acc_2_rrr_y*rrr_link2_mass
     c_true_rrr_in_base_x = (
@@ -3004,12 +2994,13 @@ def _legs_rrr2(c, k, x, s, f):
     inv_rrr2_platform_joint_offset_x*(S_dot_rrr2_x*axis_y_rrr2_axes2_in_base_x +
         S_dot_rrr2_y*axis_y_rrr2_axes2_in_base_y + qd_1_rrr2*r_1_rrr2_r0_x) - qd_1_rrr2
     )
+    # (rrr2-V10) centripetal tensor of link 1
+    W_1_rrr2_t = qd_1_rrr2*qd_1_rrr2
     # (rrr2-V12) centripetal tensor of link 2
     W_2_rrr2_t = omega_2_rrr2_z*omega_2_rrr2_z
     # (rrr2-A5) acceleration of the connection point at zero joint accelerations
     bias_rrr2_x = (
-    -omega_2_rrr2_z*omega_2_rrr2_z*rrr2_platform_joint_offset_x -
-        c_2_rrr2*qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x
+    -W_2_rrr2_t*rrr2_platform_joint_offset_x - W_1_rrr2_t*c_2_rrr2*rrr2_joint2_offset_x
     )
     # (rrr2-V5) reciprocal vector 1
     w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y
@@ -3028,7 +3019,7 @@ def _legs_rrr2(c, k, x, s, f):
     )
     # (rrr2-A6) acceleration of the connection point left to the joint accelerations
     rel_rrr2_x = S_ddot_rrr2_tip_x - bias_rrr2_x
-    rel_rrr2_y = S_ddot_rrr2_tip_y + qd_1_rrr2*qd_1_rrr2*rrr2_joint2_offset_x*s_2_rrr2
+    rel_rrr2_y = S_ddot_rrr2_tip_y + W_1_rrr2_t*rrr2_joint2_offset_x*s_2_rrr2
     # (rrr2-A8) acceleration of joint 1
     qdd_1_rrr2 = inv_r_1_rrr2_r0_y*rel_rrr2_x
     # (rrr2-N3) acceleration of the reference point of link 2, less gravity
@@ -3040,28 +3031,28 @@ def _legs_rrr2(c, k, x, s, f):
     S_ddot_rrr2_tip_y - axis_y_rrr2_axes2_in_base_x*gravity_x -
         axis_y_rrr2_axes2_in_base_y*gravity_y
     )
-    # (rrr2-N18) inertia moment of the links that turn with link 1, about their reference points
+    # (rrr2-N23) inertia moment of the links that turn with link 1, about their reference points
     mu_1_rrr2_z = (
     h_1_rrr2_y*(c_1_rrr2*g_r0_x_2 + g_r0_y_2*s_1_rrr2) - J_1_rrr2_zz*qdd_1_rrr2 -
         h_1_rrr2_x*(c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)
     )
-    # (rrr2-A17) angular acceleration of link 2
+    # (rrr2-A16) angular acceleration of link 2
     alpha_2_rrr2_z = (
     inv_rrr2_platform_joint_offset_x*(rel_rrr2_y + qdd_1_rrr2*r_1_rrr2_r0_x) - qdd_1_rrr2
     )
-    # (rrr2-N10) inertia moment of the links that turn with link 2, about their reference points
+    # (rrr2-N16) inertia moment of the links that turn with link 2, about their reference points
     mu_2_rrr2_z = J_2_rrr2_zz*alpha_2_rrr2_z + acc_2_rrr2_y*h_2_rrr2_x - acc_2_rrr2_x*h_2_rrr2_y
-    # (rrr2-N21) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
+    # (rrr2-N25) moment about joint 1 of the links from 1 outwards, the force at the connection point left out
     N_1_rrr2_z = mu_1_rrr2_z + mu_2_rrr2_z
-    # (rrr2-N27) force at the connection point that balances the leg's inertia and weight along all freedoms
+    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_rrr2_t = inv_rrr2_platform_joint_offset_x*mu_2_rrr2_z
-    # (rrr2-N30) leg force on the platform without actuation and without the mass at the connection point
+    # (rrr2-N33) leg force on the platform without actuation and without the mass at the connection point
     c_rrr2_x = (
     W_2_rrr2_t*h_2_rrr2_x + alpha_2_rrr2_z*h_2_rrr2_y - inv_r_1_rrr2_r0_y*(G_rrr2_t*r_1_rrr2_r0_x
         - N_1_rrr2_z)
     )
     c_rrr2_y = W_2_rrr2_t*h_2_rrr2_y - G_rrr2_t - alpha_2_rrr2_z*h_2_rrr2_x
-    # (rrr2-N35) leg force on the platform without actuation, the last link's mass included
+    # (rrr2-N38) leg force on the platform without actuation, the last link's mass included
     c_true_rrr2_x = c_rrr2_x - acc_2_rrr2_x*rrr2_link2_mass
     c_true_rrr2_y = c_rrr2_y - acc_2_rrr2_y*rrr2_link2_mass
     c_true_rrr2_in_base_x = (
@@ -3228,8 +3219,9 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 3))),
             _dynamics_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'g_r0_x', 'g_r0_y',
-            'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+('J_1_rrr_zz', 'J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr',
+            'd_Gamma_1_rrr_t', 'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'g_r0_x',
+            'g_r0_y', 'h_1_rrr_x', 'h_1_rrr_y', 'h_2_rrr_x', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
             'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
             'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
             'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
@@ -3251,7 +3243,8 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 3))),
             _dynamics_rrr2,
             "rrr2",
 (),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'g_r0_x_2',
+('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Jc_1_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2',
+            'd_Gamma_1_rrr2_t', 'd_Gamma_1_rrr2_y', 'd_c_rrr2_yy', 'd_phi_2_rrr2_t', 'g_r0_x_2',
             'g_r0_y_2', 'h_1_rrr2_x', 'h_1_rrr2_y', 'h_2_rrr2_x', 'h_2_rrr2_y',
             'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
             'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
@@ -3291,10 +3284,11 @@ arrays=(('M', (3, 3)),),
             _M_rrr,
             "rrr",
 (),
-('J_1_rrr_zz', 'J_2_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'h_2_rrr_x',
-            'h_2_rrr_y', 'inv_Kd_1_rrr_t_5', 'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t',
-            'rho2_1_rrr_t', 'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx',
-            'rrr_base_frame_yy', 'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+('J_2_rrr_zz', 'Jc_1_rrr_zz', 'Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'd_Gamma_1_rrr_t',
+            'd_Gamma_1_rrr_y', 'd_c_rrr_yy', 'd_phi_2_rrr_t', 'h_2_rrr_y', 'inv_Kd_1_rrr_t_5',
+            'inv_rrr_platform_joint_offset_x', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
             'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
             'size_rrr'),
 (),
@@ -3307,10 +3301,11 @@ arrays=(('M', (3, 3)),),
             _M_rrr2,
             "rrr2",
 (),
-('J_1_rrr2_zz', 'J_2_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'h_2_rrr2_x',
-            'h_2_rrr2_y', 'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x',
-            'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy',
-            'rrr2_base_frame_yx', 'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
+('J_2_rrr2_zz', 'Jc_1_rrr2_zz', 'Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2',
+            'd_Gamma_1_rrr2_t', 'd_Gamma_1_rrr2_y', 'd_c_rrr2_yy', 'd_phi_2_rrr2_t', 'h_2_rrr2_y',
+            'inv_Kd_1_rrr2_t_5', 'inv_rrr2_platform_joint_offset_x', 'inv_uu_2_rrr2_t',
+            'rho2_1_rrr2_t', 'rrr2_base_frame_xx', 'rrr2_base_frame_xy', 'rrr2_base_frame_yx',
+            'rrr2_base_frame_yy', 'rrr2_base_point_x', 'rrr2_base_point_y',
             'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x', 'rrr2_platform_point_x',
             'rrr2_platform_point_y', 'size_rrr2'),
 (),

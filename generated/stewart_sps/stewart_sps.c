@@ -568,7 +568,7 @@ int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2526 mul, 1842 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- dynamics: 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -894,110 +894,87 @@ INLINE void dynamics_legs_urps(const prepared *m, size_t leg, size_t legs, const
         const real inv_w_1_t_23 = 1/w_1_t_2;
         const real w_1_t_3 = inv_w_1_t_23*v_2_t_2;
         const real w_1_t_4 = inv_w_1_t_23*v_2_t;
-        const real w_1_r0_x = s_3*w_1_t_4 - c_3_t*w_1_t_3;
-        const real w_1_r0_y = c_3_t*w_1_t_4 + s_3*w_1_t_3;
-        const real w_1_t_5 = s_2*w_1_r0_x;
-        const real w_1_t_6 = c_2*w_1_r0_x;
         /* (urps-V7) reciprocal vector 2 */
         const real w_2_t = inv_w_1_t_23*v_1_t_4;
         const real w_2_t_2 = inv_w_1_t_23*v_1_t_3;
         /* (urps-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = s_2*w_1_t_5;
-        const real d_alpha_1_t_2 = c_2*w_1_t_5;
-        const real d_alpha_1_t_3 = s_2*w_1_t_6;
-        const real d_alpha_1_t_4 = c_2*w_1_t_6;
-        const real d_alpha_1_t_5 = s_2*w_1_r0_y;
-        const real d_alpha_1_t_6 = c_2*w_1_r0_y;
-        const real _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2;
-        const real _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2;
-        const real _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2;
-        const real _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2;
-        /* (urps-V7) reciprocal vector 2 */
-        const real w_2_r0_x = c_3_t*w_2_t + s_3*w_2_t_2;
-        const real w_2_r0_y = c_3_t*w_2_t_2 - s_3*w_2_t;
+        const real d_alpha_1_zx = s_2*w_1_t_3;
+        const real d_alpha_1_zy = s_2*w_1_t_4;
         /* (urps-A23) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = s_3*w_2_r0_x - _y_2*c_3_t;
-        const real _y_3 = -_y_2*s_3 - c_3_t*w_2_r0_x;
-        const real _x_4 = c_3_t*d_alpha_1_t_6 + s_3*w_2_r0_y;
-        const real _y_4 = d_alpha_1_t_6*s_3 - c_3_t*w_2_r0_y;
-        const real d_alpha_2_t = _x_2*c_3_t;
-        const real d_alpha_2_t_2 = _x_2*s_3;
-        const real _x_5 = _x_4*s_3 - _x_3*c_3_t;
-        const real _y_5 = -_x_3*s_3 - _x_4*c_3_t;
-        const real _x_6 = _y_4*s_3 - _y_3*c_3_t;
-        const real _y_6 = -_y_3*s_3 - _y_4*c_3_t;
-        const real _x_7 = d_alpha_1_t_5*s_3 - _y*c_3_t;
-        const real _y_7 = -_y*s_3 - c_3_t*d_alpha_1_t_5;
+        const real d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t;
+        const real d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4;
+        const real d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3;
+        const real d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4;
         /* (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link
            3, about their reference points */
-        const real d_mu_3_t = J_group_3_xx*_x_5 + J_group_3_xy*_x_6 + J_group_3_xz*_x_7;
-        const real d_mu_3_t_2 = J_group_3_xy*_y_5 + J_group_3_yy*_y_6 + J_group_3_yz*_y_7;
-        const real d_mu_3_t_3 = J_group_3_xz*d_alpha_2_t + J_group_3_yz*d_alpha_2_t_2 -
-            J_group_3_zz*_x;
-        const real d_mu_3_xy = J_group_3_xx*_y_5 + J_group_3_xy*_y_6 + J_group_3_xz*_y_7 - h_4_x;
-        const real d_mu_3_xz = h_4_z + J_group_3_xz*_x - J_group_3_xx*d_alpha_2_t -
-            J_group_3_xy*d_alpha_2_t_2;
-        const real d_mu_3_yx = h_4_x + J_group_3_xy*_x_5 + J_group_3_yy*_x_6 + J_group_3_yz*_x_7;
-        const real d_mu_3_yz = J_group_3_yz*_x - h_4_y - J_group_3_xy*d_alpha_2_t -
-            J_group_3_yy*d_alpha_2_t_2;
-        const real d_mu_3_zx = J_group_3_xz*_x_5 + J_group_3_yz*_x_6 + J_group_3_zz*_x_7 - h_4_z;
-        const real d_mu_3_zy = h_4_y + J_group_3_xz*_y_5 + J_group_3_yz*_y_6 + J_group_3_zz*_y_7;
+        const real d_mu_3_t = J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx +
+            J_group_3_xz*d_alpha_1_zx;
+        const real d_mu_3_t_2 = J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy -
+            J_group_3_yz*d_alpha_1_zy;
+        const real d_mu_3_xy = J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x -
+            J_group_3_xz*d_alpha_1_zy;
+        const real d_mu_3_yx = h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx +
+            J_group_3_yz*d_alpha_1_zx;
+        const real d_mu_3_zx = J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx +
+            J_group_3_zz*d_alpha_1_zx - h_4_z;
+        const real d_mu_3_zy = h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy -
+            J_group_3_zz*d_alpha_1_zy;
         /* (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
         const real d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2;
-        const real d_Gamma_1_z = d_mu_3_xz*v_1_t + d_mu_3_yz*v_1_t_2 - d_mu_3_t_3*s_2;
+        const real d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2;
         /* (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
         const real d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2;
-        const real d_Gamma_2_z = d_mu_3_xz*s_3 - c_3_t*d_mu_3_yz;
+        const real d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3;
+        /* (urps-N29) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t;
+        const real d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2;
         /* (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = _x_7*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - _x_6*h_4_x -
-            w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2);
-        const real d_c_xy = _y_7*h_4_z + d_Gamma_2_y*w_2_t - _y_6*h_4_x - d_Gamma_1_y*w_1_t_3;
-        const real d_c_xz = _x*h_4_z + d_Gamma_2_z*w_2_t + d_alpha_2_t_2*h_4_x -
-            d_Gamma_1_z*w_1_t_3;
-        const real d_c_yz = d_Gamma_1_z*w_1_t_4 + d_Gamma_2_z*w_2_t_2 - _x*h_4_y -
-            d_alpha_2_t*h_4_x;
+        const real d_c_xx = d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) -
+            d_alpha_2_yx*h_4_x - w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2);
+        const real d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z -
+            d_alpha_2_yy*h_4_x;
+        const real d_c_yy = d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y +
+            d_alpha_2_xy*h_4_x;
         /* (urps-N35) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _y_7*h_4_y - _y_5*h_4_x - d_Gamma_1_y*w_1_t_4 -
-            d_Gamma_2_y*w_2_t_2;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_alpha_2_t_2*h_4_y - d_alpha_2_t*h_4_z;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = axis_x_urps_axes3_x*d_c_xy + axis_z_x*d_c_yz -
-            Q_t_2*axis_y_urps_axes3_in_base_x;
-        const real Q_t_6 = axis_x_urps_axes3_y*d_c_xy + axis_z_y*d_c_yz -
-            Q_t_2*axis_y_urps_axes3_in_base_y;
-        const real Q_t_7 = axis_x_urps_axes3_z*d_c_xy + axis_z_z*d_c_yz -
-            Q_t_2*axis_y_urps_axes3_in_base_z;
-        const real Q_t_8 = Q_t_4*axis_z_x - axis_x_urps_axes3_x*d_c_xz;
-        const real Q_t_9 = Q_t_4*axis_z_y - axis_x_urps_axes3_y*d_c_xz;
-        const real Q_t_10 = Q_t_4*axis_z_z - axis_x_urps_axes3_z*d_c_xz;
-        const real Q_t_11 = Q_t_5*axis_y_urps_axes3_in_base_x - Q_t_8*axis_z_x;
-        const real Q_t_12 = 2*Q_t_11 + d_c_xx;
-        const real Q_t_13 = Q_t_5*axis_y_urps_axes3_in_base_y + Q_t_6*axis_y_urps_axes3_in_base_x
-            - Q_t_8*axis_z_y - Q_t_9*axis_z_x;
-        const real Q_t_14 = Q_t_5*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_x
-            - Q_t_10*axis_z_x - Q_t_8*axis_z_z;
-        const real Q_t_15 = Q_t_6*axis_y_urps_axes3_in_base_y - Q_t_9*axis_z_y;
-        const real Q_t_16 = 2*Q_t_15 + d_c_xx;
-        const real Q_t_17 = Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_y
-            - Q_t_10*axis_z_y - Q_t_9*axis_z_z;
-        const real Q_t_18 = Q_t_7*axis_y_urps_axes3_in_base_z - Q_t_10*axis_z_z;
-        const real Q_t_19 = 2*Q_t_18 + d_c_xx;
+        const real Q_t = R(0.5)*d_c_xx;
+        const real Q_t_2 = R(0.5)*d_c_yy;
+        const real Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy -
+            axis_z_x*d_G_xz;
+        const real Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy -
+            axis_z_y*d_G_xz;
+        const real Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy -
+            axis_z_z*d_G_xz;
+        const real Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz;
+        const real Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz;
+        const real Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz;
+        const real Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x;
+        const real Q_t_10 = 2*Q_t_9;
+        const real Q_t_11 = Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x +
+            Q_t_6*axis_y_urps_axes3_in_base_y + Q_t_7*axis_y_urps_axes3_in_base_x;
+        const real Q_t_12 = Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x +
+            Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_x;
+        const real Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y;
+        const real Q_t_14 = 2*Q_t_13;
+        const real Q_t_15 = Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y +
+            Q_t_7*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_y;
+        const real Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z;
+        const real Q_t_17 = 2*Q_t_16;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
+        const real M_ta_t = Q_t_11*q_in_base_z;
+        const real M_ta_t_2 = Q_t_12*q_in_base_y;
         const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_7 = Q_t_17*q_in_base_x;
+        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
+        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
+        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
+        const real M_ta_t_7 = Q_t_15*q_in_base_x;
         const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
+        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
+        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
+        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
         const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
@@ -1126,11 +1103,11 @@ INLINE void dynamics_legs_urps(const prepared *m, size_t leg, size_t legs, const
         /* (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 3 */
         const real d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_x*d_mu_3_zy - axis_z_x*d_mu_3_t_3;
+            axis_y_urps_axes3_in_base_x*d_mu_3_zy;
         const real d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_y*d_mu_3_zy - axis_z_y*d_mu_3_t_3;
+            axis_y_urps_axes3_in_base_y*d_mu_3_zy;
         const real d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_z*d_mu_3_zy - axis_z_z*d_mu_3_t_3;
+            axis_y_urps_axes3_in_base_z*d_mu_3_zy;
         /* (M8) coupling of extra joint 3 with the rotation of the platform */
         const real M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z;
         const real M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x;
@@ -1139,12 +1116,12 @@ INLINE void dynamics_legs_urps(const prepared *m, size_t leg, size_t legs, const
         const real H_a_4_x = axis_z_z*q_in_base_y - axis_z_y*q_in_base_z;
         const real H_a_4_y = axis_z_x*q_in_base_z - axis_z_z*q_in_base_x;
         const real H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y;
-        o->sum[0][k] = Q_t_12;  /* total_urps_xx */
-        o->sum[1][k] = Q_t_13;  /* total_urps_xy */
-        o->sum[2][k] = Q_t_14;  /* total_urps_xz */
-        o->sum[3][k] = Q_t_16;  /* total_urps_yy */
-        o->sum[4][k] = Q_t_17;  /* total_urps_yz */
-        o->sum[5][k] = Q_t_19;  /* total_urps_zz */
+        o->sum[0][k] = Q_t_10;  /* total_urps_xx */
+        o->sum[1][k] = Q_t_11;  /* total_urps_xy */
+        o->sum[2][k] = Q_t_12;  /* total_urps_xz */
+        o->sum[3][k] = Q_t_14;  /* total_urps_yy */
+        o->sum[4][k] = Q_t_15;  /* total_urps_yz */
+        o->sum[5][k] = Q_t_17;  /* total_urps_zz */
         o->sum[6][k] = M_ta_t_3;  /* total_urps_xx_2 */
         o->sum[7][k] = M_ta_t_4;  /* total_urps_xy_2 */
         o->sum[8][k] = M_ta_t_5;  /* total_urps_xz_2 */
@@ -1386,7 +1363,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 72, w, code, H);
 }
 
-/* ---- M: 1557 mul, 1065 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
+/* ---- M: 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1611,110 +1588,87 @@ INLINE void M_legs_urps(const prepared *m, size_t leg, size_t legs, const M_valu
         const real inv_w_1_t_23 = 1/w_1_t_2;
         const real w_1_t_3 = inv_w_1_t_23*v_2_t_2;
         const real w_1_t_4 = inv_w_1_t_23*v_2_t;
-        const real w_1_r0_x = s_3*w_1_t_4 - c_3_t*w_1_t_3;
-        const real w_1_r0_y = c_3_t*w_1_t_4 + s_3*w_1_t_3;
-        const real w_1_t_5 = s_2*w_1_r0_x;
-        const real w_1_t_6 = c_2*w_1_r0_x;
         /* (urps-V7) reciprocal vector 2 */
         const real w_2_t = inv_w_1_t_23*v_1_t_4;
         const real w_2_t_2 = inv_w_1_t_23*v_1_t_3;
         /* (urps-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = s_2*w_1_t_5;
-        const real d_alpha_1_t_2 = c_2*w_1_t_5;
-        const real d_alpha_1_t_3 = s_2*w_1_t_6;
-        const real d_alpha_1_t_4 = c_2*w_1_t_6;
-        const real d_alpha_1_t_5 = s_2*w_1_r0_y;
-        const real d_alpha_1_t_6 = c_2*w_1_r0_y;
-        const real _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2;
-        const real _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2;
-        const real _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2;
-        const real _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2;
-        /* (urps-V7) reciprocal vector 2 */
-        const real w_2_r0_x = c_3_t*w_2_t + s_3*w_2_t_2;
-        const real w_2_r0_y = c_3_t*w_2_t_2 - s_3*w_2_t;
+        const real d_alpha_1_zx = s_2*w_1_t_3;
+        const real d_alpha_1_zy = s_2*w_1_t_4;
         /* (urps-A23) coefficient of the acceleration in: angular acceleration of link 2 */
-        const real _x_3 = s_3*w_2_r0_x - _y_2*c_3_t;
-        const real _y_3 = -_y_2*s_3 - c_3_t*w_2_r0_x;
-        const real _x_4 = c_3_t*d_alpha_1_t_6 + s_3*w_2_r0_y;
-        const real _y_4 = d_alpha_1_t_6*s_3 - c_3_t*w_2_r0_y;
-        const real d_alpha_2_t = _x_2*c_3_t;
-        const real d_alpha_2_t_2 = _x_2*s_3;
-        const real _x_5 = _x_4*s_3 - _x_3*c_3_t;
-        const real _y_5 = -_x_3*s_3 - _x_4*c_3_t;
-        const real _x_6 = _y_4*s_3 - _y_3*c_3_t;
-        const real _y_6 = -_y_3*s_3 - _y_4*c_3_t;
-        const real _x_7 = d_alpha_1_t_5*s_3 - _y*c_3_t;
-        const real _y_7 = -_y*s_3 - c_3_t*d_alpha_1_t_5;
+        const real d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t;
+        const real d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4;
+        const real d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3;
+        const real d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4;
         /* (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link
            3, about their reference points */
-        const real d_mu_3_t = J_group_3_xx*_x_5 + J_group_3_xy*_x_6 + J_group_3_xz*_x_7;
-        const real d_mu_3_t_2 = J_group_3_xy*_y_5 + J_group_3_yy*_y_6 + J_group_3_yz*_y_7;
-        const real d_mu_3_t_3 = J_group_3_xz*d_alpha_2_t + J_group_3_yz*d_alpha_2_t_2 -
-            J_group_3_zz*_x;
-        const real d_mu_3_xy = J_group_3_xx*_y_5 + J_group_3_xy*_y_6 + J_group_3_xz*_y_7 - h_4_x;
-        const real d_mu_3_xz = h_4_z + J_group_3_xz*_x - J_group_3_xx*d_alpha_2_t -
-            J_group_3_xy*d_alpha_2_t_2;
-        const real d_mu_3_yx = h_4_x + J_group_3_xy*_x_5 + J_group_3_yy*_x_6 + J_group_3_yz*_x_7;
-        const real d_mu_3_yz = J_group_3_yz*_x - h_4_y - J_group_3_xy*d_alpha_2_t -
-            J_group_3_yy*d_alpha_2_t_2;
-        const real d_mu_3_zx = J_group_3_xz*_x_5 + J_group_3_yz*_x_6 + J_group_3_zz*_x_7 - h_4_z;
-        const real d_mu_3_zy = h_4_y + J_group_3_xz*_y_5 + J_group_3_yz*_y_6 + J_group_3_zz*_y_7;
+        const real d_mu_3_t = J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx +
+            J_group_3_xz*d_alpha_1_zx;
+        const real d_mu_3_t_2 = J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy -
+            J_group_3_yz*d_alpha_1_zy;
+        const real d_mu_3_xy = J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x -
+            J_group_3_xz*d_alpha_1_zy;
+        const real d_mu_3_yx = h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx +
+            J_group_3_yz*d_alpha_1_zx;
+        const real d_mu_3_zx = J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx +
+            J_group_3_zz*d_alpha_1_zx - h_4_z;
+        const real d_mu_3_zy = h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy -
+            J_group_3_zz*d_alpha_1_zy;
         /* (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
         const real d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2;
-        const real d_Gamma_1_z = d_mu_3_xz*v_1_t + d_mu_3_yz*v_1_t_2 - d_mu_3_t_3*s_2;
+        const real d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2;
         /* (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
            and weight */
         const real d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2;
-        const real d_Gamma_2_z = d_mu_3_xz*s_3 - c_3_t*d_mu_3_yz;
+        const real d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3;
+        /* (urps-N29) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t;
+        const real d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2;
         /* (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real d_c_xx = _x_7*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - _x_6*h_4_x -
-            w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2);
-        const real d_c_xy = _y_7*h_4_z + d_Gamma_2_y*w_2_t - _y_6*h_4_x - d_Gamma_1_y*w_1_t_3;
-        const real d_c_xz = _x*h_4_z + d_Gamma_2_z*w_2_t + d_alpha_2_t_2*h_4_x -
-            d_Gamma_1_z*w_1_t_3;
-        const real d_c_yz = d_Gamma_1_z*w_1_t_4 + d_Gamma_2_z*w_2_t_2 - _x*h_4_y -
-            d_alpha_2_t*h_4_x;
+        const real d_c_xx = d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) -
+            d_alpha_2_yx*h_4_x - w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2);
+        const real d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z -
+            d_alpha_2_yy*h_4_x;
+        const real d_c_yy = d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y +
+            d_alpha_2_xy*h_4_x;
         /* (urps-N35) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = d_c_xx + _y_7*h_4_y - _y_5*h_4_x - d_Gamma_1_y*w_1_t_4 -
-            d_Gamma_2_y*w_2_t_2;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_c_xx + d_alpha_2_t_2*h_4_y - d_alpha_2_t*h_4_z;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = axis_x_urps_axes3_x*d_c_xy + axis_z_x*d_c_yz -
-            Q_t_2*axis_y_urps_axes3_in_base_x;
-        const real Q_t_6 = axis_x_urps_axes3_y*d_c_xy + axis_z_y*d_c_yz -
-            Q_t_2*axis_y_urps_axes3_in_base_y;
-        const real Q_t_7 = axis_x_urps_axes3_z*d_c_xy + axis_z_z*d_c_yz -
-            Q_t_2*axis_y_urps_axes3_in_base_z;
-        const real Q_t_8 = Q_t_4*axis_z_x - axis_x_urps_axes3_x*d_c_xz;
-        const real Q_t_9 = Q_t_4*axis_z_y - axis_x_urps_axes3_y*d_c_xz;
-        const real Q_t_10 = Q_t_4*axis_z_z - axis_x_urps_axes3_z*d_c_xz;
-        const real Q_t_11 = Q_t_5*axis_y_urps_axes3_in_base_x - Q_t_8*axis_z_x;
-        const real Q_t_12 = 2*Q_t_11 + d_c_xx;
-        const real Q_t_13 = Q_t_5*axis_y_urps_axes3_in_base_y + Q_t_6*axis_y_urps_axes3_in_base_x
-            - Q_t_8*axis_z_y - Q_t_9*axis_z_x;
-        const real Q_t_14 = Q_t_5*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_x
-            - Q_t_10*axis_z_x - Q_t_8*axis_z_z;
-        const real Q_t_15 = Q_t_6*axis_y_urps_axes3_in_base_y - Q_t_9*axis_z_y;
-        const real Q_t_16 = 2*Q_t_15 + d_c_xx;
-        const real Q_t_17 = Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_y
-            - Q_t_10*axis_z_y - Q_t_9*axis_z_z;
-        const real Q_t_18 = Q_t_7*axis_y_urps_axes3_in_base_z - Q_t_10*axis_z_z;
-        const real Q_t_19 = 2*Q_t_18 + d_c_xx;
+        const real Q_t = R(0.5)*d_c_xx;
+        const real Q_t_2 = R(0.5)*d_c_yy;
+        const real Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy -
+            axis_z_x*d_G_xz;
+        const real Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy -
+            axis_z_y*d_G_xz;
+        const real Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy -
+            axis_z_z*d_G_xz;
+        const real Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz;
+        const real Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz;
+        const real Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz;
+        const real Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x;
+        const real Q_t_10 = 2*Q_t_9;
+        const real Q_t_11 = Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x +
+            Q_t_6*axis_y_urps_axes3_in_base_y + Q_t_7*axis_y_urps_axes3_in_base_x;
+        const real Q_t_12 = Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x +
+            Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_x;
+        const real Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y;
+        const real Q_t_14 = 2*Q_t_13;
+        const real Q_t_15 = Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y +
+            Q_t_7*axis_y_urps_axes3_in_base_z + Q_t_8*axis_y_urps_axes3_in_base_y;
+        const real Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z;
+        const real Q_t_17 = 2*Q_t_16;
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
+        const real M_ta_t = Q_t_11*q_in_base_z;
+        const real M_ta_t_2 = Q_t_12*q_in_base_y;
         const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_7 = Q_t_17*q_in_base_x;
+        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
+        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
+        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
+        const real M_ta_t_7 = Q_t_15*q_in_base_x;
         const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
+        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
+        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
+        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
         const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
@@ -1726,21 +1680,21 @@ INLINE void M_legs_urps(const prepared *m, size_t leg, size_t legs, const M_valu
         /* (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra
            freedom of joint 3 */
         const real d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_x*d_mu_3_zy - axis_z_x*d_mu_3_t_3;
+            axis_y_urps_axes3_in_base_x*d_mu_3_zy;
         const real d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_y*d_mu_3_zy - axis_z_y*d_mu_3_t_3;
+            axis_y_urps_axes3_in_base_y*d_mu_3_zy;
         const real d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx +
-            axis_y_urps_axes3_in_base_z*d_mu_3_zy - axis_z_z*d_mu_3_t_3;
+            axis_y_urps_axes3_in_base_z*d_mu_3_zy;
         /* (M8) coupling of extra joint 3 with the rotation of the platform */
         const real M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z;
         const real M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x;
         const real M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y;
-        o->sum[0][k] = Q_t_12;  /* total_urps_xx */
-        o->sum[1][k] = Q_t_13;  /* total_urps_xy */
-        o->sum[2][k] = Q_t_14;  /* total_urps_xz */
-        o->sum[3][k] = Q_t_16;  /* total_urps_yy */
-        o->sum[4][k] = Q_t_17;  /* total_urps_yz */
-        o->sum[5][k] = Q_t_19;  /* total_urps_zz */
+        o->sum[0][k] = Q_t_10;  /* total_urps_xx */
+        o->sum[1][k] = Q_t_11;  /* total_urps_xy */
+        o->sum[2][k] = Q_t_12;  /* total_urps_xz */
+        o->sum[3][k] = Q_t_14;  /* total_urps_yy */
+        o->sum[4][k] = Q_t_15;  /* total_urps_yz */
+        o->sum[5][k] = Q_t_17;  /* total_urps_zz */
         o->sum[6][k] = M_ta_t_3;  /* total_urps_xx_2 */
         o->sum[7][k] = M_ta_t_4;  /* total_urps_xy_2 */
         o->sum[8][k] = M_ta_t_5;  /* total_urps_xz_2 */

@@ -109,8 +109,7 @@ extern const stewart_sps_real stewart_sps_HOME_Q[STEWART_SPS_NJ];
    model is all NaN. */
 int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *model);
 
-/* Inertia matrix M. 1557 mul, 1065 add, 18 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV).
-   */
+/* Inertia matrix M. 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
 int stewart_sps_M(const stewart_sps_model *model, const stewart_sps_real *X, stewart_sps_real *M);
 size_t stewart_sps_M_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
     stewart_sps_real *M, int *status);
@@ -128,7 +127,7 @@ int stewart_sps_H(const stewart_sps_model *model, const stewart_sps_real *X, ste
 size_t stewart_sps_H_batch(const stewart_sps_model *model, size_t n, const stewart_sps_real *X,
     stewart_sps_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 2526 mul, 1842 add, 18 div, 12 sqrt, 12 trig. In: X
+/* M, Z and H together, sharing the work. 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig. In: X
    (NQ), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int stewart_sps_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const
     stewart_sps_real *V, stewart_sps_real *M, stewart_sps_real *Z, stewart_sps_real *H);
@@ -168,7 +167,7 @@ size_t stewart_sps_inverse_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
     stewart_sps_real *wrench, stewart_sps_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2526 mul, 1842 add, 18 div, 12
+/* Acceleration A under the actuator forces tau and the wrench. 2196 mul, 1626 add, 18 div, 12
    sqrt, 12 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int stewart_sps_forward_dynamics(const stewart_sps_model *model, const stewart_sps_real *X, const

@@ -682,7 +682,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 2526 mul, 1842 add, 18 div, 12 sqrt, 12 trig
+# dynamics: 2196 mul, 1626 add, 18 div, 12 sqrt, 12 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -895,105 +895,87 @@ def _dynamics_urps(c, k, x, s, f):
     inv_w_1_t_23 = 1.0/w_1_t_2
     w_1_t_3 = inv_w_1_t_23*v_2_t_2
     w_1_t_4 = inv_w_1_t_23*v_2_t
-    w_1_r0_x = s_3*w_1_t_4 - c_3_t*w_1_t_3
-    w_1_r0_y = c_3_t*w_1_t_4 + s_3*w_1_t_3
-    w_1_t_5 = s_2*w_1_r0_x
-    w_1_t_6 = c_2*w_1_r0_x
     # (urps-V7) reciprocal vector 2
     w_2_t = inv_w_1_t_23*v_1_t_4
     w_2_t_2 = inv_w_1_t_23*v_1_t_3
     # (urps-A19) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = s_2*w_1_t_5
-    d_alpha_1_t_2 = c_2*w_1_t_5
-    d_alpha_1_t_3 = s_2*w_1_t_6
-    d_alpha_1_t_4 = c_2*w_1_t_6
-    d_alpha_1_t_5 = s_2*w_1_r0_y
-    d_alpha_1_t_6 = c_2*w_1_r0_y
-    _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2
-    _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2
-    _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2
-    _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2
-    # (urps-V7) reciprocal vector 2
-    w_2_r0_x = c_3_t*w_2_t + s_3*w_2_t_2
-    w_2_r0_y = c_3_t*w_2_t_2 - s_3*w_2_t
+    d_alpha_1_zx = s_2*w_1_t_3
+    d_alpha_1_zy = s_2*w_1_t_4
     # (urps-A23) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = s_3*w_2_r0_x - _y_2*c_3_t
-    _y_3 = -_y_2*s_3 - c_3_t*w_2_r0_x
-    _x_4 = c_3_t*d_alpha_1_t_6 + s_3*w_2_r0_y
-    _y_4 = d_alpha_1_t_6*s_3 - c_3_t*w_2_r0_y
-    d_alpha_2_t = _x_2*c_3_t
-    d_alpha_2_t_2 = _x_2*s_3
-    _x_5 = _x_4*s_3 - _x_3*c_3_t
-    _y_5 = -_x_3*s_3 - _x_4*c_3_t
-    _x_6 = _y_4*s_3 - _y_3*c_3_t
-    _y_6 = -_y_3*s_3 - _y_4*c_3_t
-    _x_7 = d_alpha_1_t_5*s_3 - _y*c_3_t
-    _y_7 = -_y*s_3 - c_3_t*d_alpha_1_t_5
+    d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t
+    d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4
+    d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3
+    d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4
     # (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_group_3_xx*_x_5 + J_group_3_xy*_x_6 + J_group_3_xz*_x_7
-    d_mu_3_t_2 = J_group_3_xy*_y_5 + J_group_3_yy*_y_6 + J_group_3_yz*_y_7
-    d_mu_3_t_3 = J_group_3_xz*d_alpha_2_t + J_group_3_yz*d_alpha_2_t_2 - J_group_3_zz*_x
-    d_mu_3_xy = J_group_3_xx*_y_5 + J_group_3_xy*_y_6 + J_group_3_xz*_y_7 - h_4_x
-    d_mu_3_xz = h_4_z + J_group_3_xz*_x - J_group_3_xx*d_alpha_2_t - J_group_3_xy*d_alpha_2_t_2
-    d_mu_3_yx = h_4_x + J_group_3_xy*_x_5 + J_group_3_yy*_x_6 + J_group_3_yz*_x_7
-    d_mu_3_yz = J_group_3_yz*_x - h_4_y - J_group_3_xy*d_alpha_2_t - J_group_3_yy*d_alpha_2_t_2
-    d_mu_3_zx = J_group_3_xz*_x_5 + J_group_3_yz*_x_6 + J_group_3_zz*_x_7 - h_4_z
-    d_mu_3_zy = h_4_y + J_group_3_xz*_y_5 + J_group_3_yz*_y_6 + J_group_3_zz*_y_7
+    d_mu_3_t = J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx + J_group_3_xz*d_alpha_1_zx
+    d_mu_3_t_2 = J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy - J_group_3_yz*d_alpha_1_zy
+    d_mu_3_xy = (
+    J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x - J_group_3_xz*d_alpha_1_zy
+    )
+    d_mu_3_yx = (
+    h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx + J_group_3_yz*d_alpha_1_zx
+    )
+    d_mu_3_zx = (
+    J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx + J_group_3_zz*d_alpha_1_zx - h_4_z
+    )
+    d_mu_3_zy = (
+    h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy - J_group_3_zz*d_alpha_1_zy
+    )
     # (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
     d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2
-    d_Gamma_1_z = d_mu_3_xz*v_1_t + d_mu_3_yz*v_1_t_2 - d_mu_3_t_3*s_2
+    d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2
     # (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
     d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2
-    d_Gamma_2_z = d_mu_3_xz*s_3 - c_3_t*d_mu_3_yz
+    d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3
+    # (urps-N29) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t
+    d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2
     # (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    _x_7*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - _x_6*h_4_x - w_1_t_3*(d_mu_3_t*v_1_t +
-        d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2)
+    d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - d_alpha_2_yx*h_4_x -
+        w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2)
     )
-    d_c_xy = _y_7*h_4_z + d_Gamma_2_y*w_2_t - _y_6*h_4_x - d_Gamma_1_y*w_1_t_3
-    d_c_xz = _x*h_4_z + d_Gamma_2_z*w_2_t + d_alpha_2_t_2*h_4_x - d_Gamma_1_z*w_1_t_3
-    d_c_yz = d_Gamma_1_z*w_1_t_4 + d_Gamma_2_z*w_2_t_2 - _x*h_4_y - d_alpha_2_t*h_4_x
+    d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z - d_alpha_2_yy*h_4_x
+    d_c_yy = d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y + d_alpha_2_xy*h_4_x
     # (urps-N35) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _y_7*h_4_y - _y_5*h_4_x - d_Gamma_1_y*w_1_t_4 - d_Gamma_2_y*w_2_t_2
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_alpha_2_t_2*h_4_y - d_alpha_2_t*h_4_z
-    Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = axis_x_urps_axes3_x*d_c_xy + axis_z_x*d_c_yz - Q_t_2*axis_y_urps_axes3_in_base_x
-    Q_t_6 = axis_x_urps_axes3_y*d_c_xy + axis_z_y*d_c_yz - Q_t_2*axis_y_urps_axes3_in_base_y
-    Q_t_7 = axis_x_urps_axes3_z*d_c_xy + axis_z_z*d_c_yz - Q_t_2*axis_y_urps_axes3_in_base_z
-    Q_t_8 = Q_t_4*axis_z_x - axis_x_urps_axes3_x*d_c_xz
-    Q_t_9 = Q_t_4*axis_z_y - axis_x_urps_axes3_y*d_c_xz
-    Q_t_10 = Q_t_4*axis_z_z - axis_x_urps_axes3_z*d_c_xz
-    Q_t_11 = Q_t_5*axis_y_urps_axes3_in_base_x - Q_t_8*axis_z_x
-    Q_t_12 = 2.0*Q_t_11 + d_c_xx
-    Q_t_13 = (
-    Q_t_5*axis_y_urps_axes3_in_base_y + Q_t_6*axis_y_urps_axes3_in_base_x - Q_t_8*axis_z_y -
-        Q_t_9*axis_z_x
+    Q_t = 0.5*d_c_xx
+    Q_t_2 = 0.5*d_c_yy
+    Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy - axis_z_x*d_G_xz
+    Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy - axis_z_y*d_G_xz
+    Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy - axis_z_z*d_G_xz
+    Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz
+    Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz
+    Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz
+    Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x
+    Q_t_10 = 2.0*Q_t_9
+    Q_t_11 = (
+    Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_y +
+        Q_t_7*axis_y_urps_axes3_in_base_x
     )
-    Q_t_14 = (
-    Q_t_5*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_x - Q_t_10*axis_z_x -
-        Q_t_8*axis_z_z
+    Q_t_12 = (
+    Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_z +
+        Q_t_8*axis_y_urps_axes3_in_base_x
     )
-    Q_t_15 = Q_t_6*axis_y_urps_axes3_in_base_y - Q_t_9*axis_z_y
-    Q_t_16 = 2.0*Q_t_15 + d_c_xx
-    Q_t_17 = (
-    Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_y - Q_t_10*axis_z_y -
-        Q_t_9*axis_z_z
+    Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y
+    Q_t_14 = 2.0*Q_t_13
+    Q_t_15 = (
+    Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_z +
+        Q_t_8*axis_y_urps_axes3_in_base_y
     )
-    Q_t_18 = Q_t_7*axis_y_urps_axes3_in_base_z - Q_t_10*axis_z_z
-    Q_t_19 = 2.0*Q_t_18 + d_c_xx
+    Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z
+    Q_t_17 = 2.0*Q_t_16
     # (M2) coupling block of M
-    M_ta_t = Q_t_13*q_in_base_z
-    M_ta_t_2 = Q_t_14*q_in_base_y
+    M_ta_t = Q_t_11*q_in_base_z
+    M_ta_t_2 = Q_t_12*q_in_base_y
     M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-    M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-    M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_7 = Q_t_17*q_in_base_x
+    M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
+    M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
+    M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
+    M_ta_t_7 = Q_t_15*q_in_base_x
     M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-    M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-    M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
+    M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
+    M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
+    M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
     M_ta_t_12 = M_ta_t_7 - M_ta_t_2
     # (M3) rotational block of M
     M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
@@ -1132,15 +1114,9 @@ def _dynamics_urps(c, k, x, s, f):
     Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
     Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
-    d_P_3_in_base_x = (
-    axis_x_urps_axes3_x*d_mu_3_zx + axis_y_urps_axes3_in_base_x*d_mu_3_zy - axis_z_x*d_mu_3_t_3
-    )
-    d_P_3_in_base_y = (
-    axis_x_urps_axes3_y*d_mu_3_zx + axis_y_urps_axes3_in_base_y*d_mu_3_zy - axis_z_y*d_mu_3_t_3
-    )
-    d_P_3_in_base_z = (
-    axis_x_urps_axes3_z*d_mu_3_zx + axis_y_urps_axes3_in_base_z*d_mu_3_zy - axis_z_z*d_mu_3_t_3
-    )
+    d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx + axis_y_urps_axes3_in_base_x*d_mu_3_zy
+    d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx + axis_y_urps_axes3_in_base_y*d_mu_3_zy
+    d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx + axis_y_urps_axes3_in_base_z*d_mu_3_zy
     # (M8) coupling of extra joint 3 with the rotation of the platform
     M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z
     M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x
@@ -1151,7 +1127,7 @@ def _dynamics_urps(c, k, x, s, f):
     H_a_4_z = axis_z_y*q_in_base_x - axis_z_x*q_in_base_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(-w_1_t_2) > _TOLERANCE * size_t_6)
     return (
-    ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
+    ok, (Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
         M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
         M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
         (mu_3_o_z, d_P_3_in_base_x, d_P_3_in_base_x, d_P_3_in_base_y, d_P_3_in_base_y,
@@ -1211,7 +1187,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 1557 mul, 1065 add, 18 div, 12 sqrt, 12 trig
+# M: 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1375,105 +1351,87 @@ def _M_urps(c, k, x, s, f):
     inv_w_1_t_23 = 1.0/w_1_t_2
     w_1_t_3 = inv_w_1_t_23*v_2_t_2
     w_1_t_4 = inv_w_1_t_23*v_2_t
-    w_1_r0_x = s_3*w_1_t_4 - c_3_t*w_1_t_3
-    w_1_r0_y = c_3_t*w_1_t_4 + s_3*w_1_t_3
-    w_1_t_5 = s_2*w_1_r0_x
-    w_1_t_6 = c_2*w_1_r0_x
     # (urps-V7) reciprocal vector 2
     w_2_t = inv_w_1_t_23*v_1_t_4
     w_2_t_2 = inv_w_1_t_23*v_1_t_3
     # (urps-A19) coefficient of the acceleration in: angular acceleration of link 1
-    d_alpha_1_t = s_2*w_1_t_5
-    d_alpha_1_t_2 = c_2*w_1_t_5
-    d_alpha_1_t_3 = s_2*w_1_t_6
-    d_alpha_1_t_4 = c_2*w_1_t_6
-    d_alpha_1_t_5 = s_2*w_1_r0_y
-    d_alpha_1_t_6 = c_2*w_1_r0_y
-    _x = c_2*d_alpha_1_t - d_alpha_1_t_3*s_2
-    _y = c_2*d_alpha_1_t_3 + d_alpha_1_t*s_2
-    _x_2 = d_alpha_1_t_4*s_2 - c_2*d_alpha_1_t_2
-    _y_2 = -c_2*d_alpha_1_t_4 - d_alpha_1_t_2*s_2
-    # (urps-V7) reciprocal vector 2
-    w_2_r0_x = c_3_t*w_2_t + s_3*w_2_t_2
-    w_2_r0_y = c_3_t*w_2_t_2 - s_3*w_2_t
+    d_alpha_1_zx = s_2*w_1_t_3
+    d_alpha_1_zy = s_2*w_1_t_4
     # (urps-A23) coefficient of the acceleration in: angular acceleration of link 2
-    _x_3 = s_3*w_2_r0_x - _y_2*c_3_t
-    _y_3 = -_y_2*s_3 - c_3_t*w_2_r0_x
-    _x_4 = c_3_t*d_alpha_1_t_6 + s_3*w_2_r0_y
-    _y_4 = d_alpha_1_t_6*s_3 - c_3_t*w_2_r0_y
-    d_alpha_2_t = _x_2*c_3_t
-    d_alpha_2_t_2 = _x_2*s_3
-    _x_5 = _x_4*s_3 - _x_3*c_3_t
-    _y_5 = -_x_3*s_3 - _x_4*c_3_t
-    _x_6 = _y_4*s_3 - _y_3*c_3_t
-    _y_6 = -_y_3*s_3 - _y_4*c_3_t
-    _x_7 = d_alpha_1_t_5*s_3 - _y*c_3_t
-    _y_7 = -_y*s_3 - c_3_t*d_alpha_1_t_5
+    d_alpha_2_xx = v_1_t*w_1_t_3 - s_3*w_2_t
+    d_alpha_2_xy = -s_3*w_2_t_2 - v_1_t*w_1_t_4
+    d_alpha_2_yx = c_3_t*w_2_t + v_1_t_2*w_1_t_3
+    d_alpha_2_yy = c_3_t*w_2_t_2 - v_1_t_2*w_1_t_4
     # (urps-N13) coefficient of the acceleration in: inertia moment of the links that turn with link 3, about their reference points
-    d_mu_3_t = J_group_3_xx*_x_5 + J_group_3_xy*_x_6 + J_group_3_xz*_x_7
-    d_mu_3_t_2 = J_group_3_xy*_y_5 + J_group_3_yy*_y_6 + J_group_3_yz*_y_7
-    d_mu_3_t_3 = J_group_3_xz*d_alpha_2_t + J_group_3_yz*d_alpha_2_t_2 - J_group_3_zz*_x
-    d_mu_3_xy = J_group_3_xx*_y_5 + J_group_3_xy*_y_6 + J_group_3_xz*_y_7 - h_4_x
-    d_mu_3_xz = h_4_z + J_group_3_xz*_x - J_group_3_xx*d_alpha_2_t - J_group_3_xy*d_alpha_2_t_2
-    d_mu_3_yx = h_4_x + J_group_3_xy*_x_5 + J_group_3_yy*_x_6 + J_group_3_yz*_x_7
-    d_mu_3_yz = J_group_3_yz*_x - h_4_y - J_group_3_xy*d_alpha_2_t - J_group_3_yy*d_alpha_2_t_2
-    d_mu_3_zx = J_group_3_xz*_x_5 + J_group_3_yz*_x_6 + J_group_3_zz*_x_7 - h_4_z
-    d_mu_3_zy = h_4_y + J_group_3_xz*_y_5 + J_group_3_yz*_y_6 + J_group_3_zz*_y_7
+    d_mu_3_t = J_group_3_xx*d_alpha_2_xx + J_group_3_xy*d_alpha_2_yx + J_group_3_xz*d_alpha_1_zx
+    d_mu_3_t_2 = J_group_3_xy*d_alpha_2_xy + J_group_3_yy*d_alpha_2_yy - J_group_3_yz*d_alpha_1_zy
+    d_mu_3_xy = (
+    J_group_3_xx*d_alpha_2_xy + J_group_3_xy*d_alpha_2_yy - h_4_x - J_group_3_xz*d_alpha_1_zy
+    )
+    d_mu_3_yx = (
+    h_4_x + J_group_3_xy*d_alpha_2_xx + J_group_3_yy*d_alpha_2_yx + J_group_3_yz*d_alpha_1_zx
+    )
+    d_mu_3_zx = (
+    J_group_3_xz*d_alpha_2_xx + J_group_3_yz*d_alpha_2_yx + J_group_3_zz*d_alpha_1_zx - h_4_z
+    )
+    d_mu_3_zy = (
+    h_4_y + J_group_3_xz*d_alpha_2_xy + J_group_3_yz*d_alpha_2_yy - J_group_3_zz*d_alpha_1_zy
+    )
     # (urps-N25) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
     d_Gamma_1_y = d_mu_3_t_2*v_1_t_2 + d_mu_3_xy*v_1_t + d_mu_3_zy*s_2
-    d_Gamma_1_z = d_mu_3_xz*v_1_t + d_mu_3_yz*v_1_t_2 - d_mu_3_t_3*s_2
+    d_Gamma_1_z = h_4_z*v_1_t - h_4_y*v_1_t_2
     # (urps-N21) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
     d_Gamma_2_y = d_mu_3_xy*s_3 - c_3_t*d_mu_3_t_2
-    d_Gamma_2_z = d_mu_3_xz*s_3 - c_3_t*d_mu_3_yz
+    d_Gamma_2_z = c_3_t*h_4_y + h_4_z*s_3
+    # (urps-N29) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_xz = d_Gamma_1_z*w_1_t_3 - d_Gamma_2_z*w_2_t
+    d_G_yz = -d_Gamma_1_z*w_1_t_4 - d_Gamma_2_z*w_2_t_2
     # (urps-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
     d_c_xx = (
-    _x_7*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - _x_6*h_4_x - w_1_t_3*(d_mu_3_t*v_1_t +
-        d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2)
+    d_alpha_1_zx*h_4_z + w_2_t*(d_mu_3_t*s_3 - c_3_t*d_mu_3_yx) - d_alpha_2_yx*h_4_x -
+        w_1_t_3*(d_mu_3_t*v_1_t + d_mu_3_yx*v_1_t_2 + d_mu_3_zx*s_2)
     )
-    d_c_xy = _y_7*h_4_z + d_Gamma_2_y*w_2_t - _y_6*h_4_x - d_Gamma_1_y*w_1_t_3
-    d_c_xz = _x*h_4_z + d_Gamma_2_z*w_2_t + d_alpha_2_t_2*h_4_x - d_Gamma_1_z*w_1_t_3
-    d_c_yz = d_Gamma_1_z*w_1_t_4 + d_Gamma_2_z*w_2_t_2 - _x*h_4_y - d_alpha_2_t*h_4_x
+    d_c_xy = d_Gamma_2_y*w_2_t - d_Gamma_1_y*w_1_t_3 - d_alpha_1_zy*h_4_z - d_alpha_2_yy*h_4_x
+    d_c_yy = d_Gamma_1_y*w_1_t_4 + d_Gamma_2_y*w_2_t_2 + d_alpha_1_zy*h_4_y + d_alpha_2_xy*h_4_x
     # (urps-N35) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = d_c_xx + _y_7*h_4_y - _y_5*h_4_x - d_Gamma_1_y*w_1_t_4 - d_Gamma_2_y*w_2_t_2
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = d_c_xx + d_alpha_2_t_2*h_4_y - d_alpha_2_t*h_4_z
-    Q_t_4 = 0.5*Q_t_3
-    Q_t_5 = axis_x_urps_axes3_x*d_c_xy + axis_z_x*d_c_yz - Q_t_2*axis_y_urps_axes3_in_base_x
-    Q_t_6 = axis_x_urps_axes3_y*d_c_xy + axis_z_y*d_c_yz - Q_t_2*axis_y_urps_axes3_in_base_y
-    Q_t_7 = axis_x_urps_axes3_z*d_c_xy + axis_z_z*d_c_yz - Q_t_2*axis_y_urps_axes3_in_base_z
-    Q_t_8 = Q_t_4*axis_z_x - axis_x_urps_axes3_x*d_c_xz
-    Q_t_9 = Q_t_4*axis_z_y - axis_x_urps_axes3_y*d_c_xz
-    Q_t_10 = Q_t_4*axis_z_z - axis_x_urps_axes3_z*d_c_xz
-    Q_t_11 = Q_t_5*axis_y_urps_axes3_in_base_x - Q_t_8*axis_z_x
-    Q_t_12 = 2.0*Q_t_11 + d_c_xx
-    Q_t_13 = (
-    Q_t_5*axis_y_urps_axes3_in_base_y + Q_t_6*axis_y_urps_axes3_in_base_x - Q_t_8*axis_z_y -
-        Q_t_9*axis_z_x
+    Q_t = 0.5*d_c_xx
+    Q_t_2 = 0.5*d_c_yy
+    Q_t_3 = Q_t*axis_x_urps_axes3_x + axis_y_urps_axes3_in_base_x*d_c_xy - axis_z_x*d_G_xz
+    Q_t_4 = Q_t*axis_x_urps_axes3_y + axis_y_urps_axes3_in_base_y*d_c_xy - axis_z_y*d_G_xz
+    Q_t_5 = Q_t*axis_x_urps_axes3_z + axis_y_urps_axes3_in_base_z*d_c_xy - axis_z_z*d_G_xz
+    Q_t_6 = Q_t_2*axis_y_urps_axes3_in_base_x - axis_z_x*d_G_yz
+    Q_t_7 = Q_t_2*axis_y_urps_axes3_in_base_y - axis_z_y*d_G_yz
+    Q_t_8 = Q_t_2*axis_y_urps_axes3_in_base_z - axis_z_z*d_G_yz
+    Q_t_9 = Q_t_3*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_x
+    Q_t_10 = 2.0*Q_t_9
+    Q_t_11 = (
+    Q_t_3*axis_x_urps_axes3_y + Q_t_4*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_y +
+        Q_t_7*axis_y_urps_axes3_in_base_x
     )
-    Q_t_14 = (
-    Q_t_5*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_x - Q_t_10*axis_z_x -
-        Q_t_8*axis_z_z
+    Q_t_12 = (
+    Q_t_3*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_x + Q_t_6*axis_y_urps_axes3_in_base_z +
+        Q_t_8*axis_y_urps_axes3_in_base_x
     )
-    Q_t_15 = Q_t_6*axis_y_urps_axes3_in_base_y - Q_t_9*axis_z_y
-    Q_t_16 = 2.0*Q_t_15 + d_c_xx
-    Q_t_17 = (
-    Q_t_6*axis_y_urps_axes3_in_base_z + Q_t_7*axis_y_urps_axes3_in_base_y - Q_t_10*axis_z_y -
-        Q_t_9*axis_z_z
+    Q_t_13 = Q_t_4*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_y
+    Q_t_14 = 2.0*Q_t_13
+    Q_t_15 = (
+    Q_t_4*axis_x_urps_axes3_z + Q_t_5*axis_x_urps_axes3_y + Q_t_7*axis_y_urps_axes3_in_base_z +
+        Q_t_8*axis_y_urps_axes3_in_base_y
     )
-    Q_t_18 = Q_t_7*axis_y_urps_axes3_in_base_z - Q_t_10*axis_z_z
-    Q_t_19 = 2.0*Q_t_18 + d_c_xx
+    Q_t_16 = Q_t_5*axis_x_urps_axes3_z + Q_t_8*axis_y_urps_axes3_in_base_z
+    Q_t_17 = 2.0*Q_t_16
     # (M2) coupling block of M
-    M_ta_t = Q_t_13*q_in_base_z
-    M_ta_t_2 = Q_t_14*q_in_base_y
+    M_ta_t = Q_t_11*q_in_base_z
+    M_ta_t_2 = Q_t_12*q_in_base_y
     M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x
-    M_ta_t_5 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x
-    M_ta_t_6 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_7 = Q_t_17*q_in_base_x
+    M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
+    M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
+    M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
+    M_ta_t_7 = Q_t_15*q_in_base_x
     M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x
-    M_ta_t_10 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
-    M_ta_t_11 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
+    M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
+    M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
+    M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
     M_ta_t_12 = M_ta_t_7 - M_ta_t_2
     # (M3) rotational block of M
     M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
@@ -1483,22 +1441,16 @@ def _M_urps(c, k, x, s, f):
     M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
     M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
     # (urps-N39) coefficient of the acceleration in: inertia and weight of the leg along the extra freedom of joint 3
-    d_P_3_in_base_x = (
-    axis_x_urps_axes3_x*d_mu_3_zx + axis_y_urps_axes3_in_base_x*d_mu_3_zy - axis_z_x*d_mu_3_t_3
-    )
-    d_P_3_in_base_y = (
-    axis_x_urps_axes3_y*d_mu_3_zx + axis_y_urps_axes3_in_base_y*d_mu_3_zy - axis_z_y*d_mu_3_t_3
-    )
-    d_P_3_in_base_z = (
-    axis_x_urps_axes3_z*d_mu_3_zx + axis_y_urps_axes3_in_base_z*d_mu_3_zy - axis_z_z*d_mu_3_t_3
-    )
+    d_P_3_in_base_x = axis_x_urps_axes3_x*d_mu_3_zx + axis_y_urps_axes3_in_base_x*d_mu_3_zy
+    d_P_3_in_base_y = axis_x_urps_axes3_y*d_mu_3_zx + axis_y_urps_axes3_in_base_y*d_mu_3_zy
+    d_P_3_in_base_z = axis_x_urps_axes3_z*d_mu_3_zx + axis_y_urps_axes3_in_base_z*d_mu_3_zy
     # (M8) coupling of extra joint 3 with the rotation of the platform
     M_ya_3_x = d_P_3_in_base_z*q_in_base_y - d_P_3_in_base_y*q_in_base_z
     M_ya_3_y = d_P_3_in_base_x*q_in_base_z - d_P_3_in_base_z*q_in_base_x
     M_ya_3_z = d_P_3_in_base_y*q_in_base_x - d_P_3_in_base_x*q_in_base_y
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_6) & (abs(-w_1_t_2) > _TOLERANCE * size_t_6)
     return (
-    ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
+    ok, (Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
         M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
         M_aa_t_5, M_aa_t_6,), (d_P_3_in_base_x, d_P_3_in_base_x, d_P_3_in_base_y, d_P_3_in_base_y,
         d_P_3_in_base_z, d_P_3_in_base_z, M_ya_3_x, M_ya_3_x, M_ya_3_y, M_ya_3_y, M_ya_3_z,

@@ -398,6 +398,8 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         const real size_ = root(size_t_3);
         /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
         const real root_2_t = size_*size_*size_t_3;
+        /* (prs-N15) force that accelerates joint 1, per unit */
+        const real P_c1_t = prs_link1_mass + prs_link2_mass;
         /* (prs-G3) first moment of link 2 about the origin of link 2 */
         const real h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
         const real h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
@@ -406,7 +408,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         const real J_2_t_2 = J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
             prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y;
         const real J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(J_2_t - J_2_t_2);
-        /* (prs-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx +
             gravity_z*prs_base_frame_zx;
@@ -429,6 +431,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
             prs_link1_centre_of_mass_z*prs_link1_mass +
             prs_link2_centre_of_mass_z*prs_link2_mass);
         model->J_2_zz[leg] = J_2_zz;
+        model->P_c1_t[leg] = P_c1_t;
         model->b_r0_x[leg] = b_r0_x;
         model->branch_1[leg] = branch_1;
         model->g_r0_x[leg] = g_r0_x;
@@ -467,7 +470,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 846 mul, 591 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 738 mul, 540 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -660,6 +663,7 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real omega_y = s->omega_y[j];
         const real omega_z = s->omega_z[j];
         const real J_2_zz = m->J_2_zz[i];
+        const real P_c1_t = m->P_c1_t[i];
         const real branch_1 = m->branch_1[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
@@ -721,6 +725,8 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx;
         const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx;
         const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx;
+        /* (prs-N11) force that accelerates joint 2, per unit */
+        const real P_c2_r0_x = c_2*h_2_y - h_2_x*s_2;
         /* (prs-V2) velocity of the connection point per rate of joint 2 */
         const real v_2_t = prs_platform_joint_offset_x*s_2;
         const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
@@ -729,74 +735,62 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real w_1_t = inv_v_2_t_2*v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
         /* (prs-V4) reciprocal vector 2 */
         const real w_2_t = inv_v_2_t_2*s_2;
         const real w_2_t_2 = c_2*inv_v_2_t_2;
-        /* (prs-A17) coefficient of the acceleration in: acceleration of the origin of joint 2 */
-        const real d_a_o2_t = c_2*w_1_r0_x;
-        const real d_a_o2_t_2 = s_2*w_1_r0_x;
-        const real d_a_o2_t_3 = c_2*w_1_r0_y;
-        const real d_a_o2_t_4 = s_2*w_1_r0_y;
-        const real _x = c_2*d_a_o2_t - d_a_o2_t_3*s_2;
-        const real _y = c_2*d_a_o2_t_3 + d_a_o2_t*s_2;
-        const real _x_2 = c_2*d_a_o2_t_2 - d_a_o2_t_4*s_2;
-        const real _y_2 = c_2*d_a_o2_t_4 + d_a_o2_t_2*s_2;
-        /* (prs-N13) coefficient of the acceleration in: inertia force of link 2 less its weight */
-        const real _x_3 = -c_2*(_x*prs_link2_mass + h_2_y*w_2_t) - s_2*(_x_2*prs_link2_mass -
-            h_2_x*w_2_t);
-        const real _x_4 = -c_2*(_y*prs_link2_mass - h_2_y*w_2_t_2) - s_2*(_y_2*prs_link2_mass +
-            h_2_x*w_2_t_2);
-        /* (prs-N24) coefficient of the acceleration in: inertia force of the links from 1 outwards, the
-           last link left out */
-        const real d_T_1_xx = prs_link1_mass*w_1_r0_x - _x_3*c_2 - _x_4*s_2;
-        const real d_T_1_xy = _x_3*s_2 + prs_link1_mass*w_1_r0_y - _x_4*c_2;
-        /* (prs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zy = J_2_zz*w_2_t_2 + _y_2*h_2_x - _y*h_2_y;
         /* (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = -c_2*d_T_1_xy - d_T_1_xx*s_2;
+        const real d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t);
+        const real _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2;
+        const real _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2;
+        /* (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t);
+        const real _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2;
+        const real _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2;
         /* (prs-N30) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_xx = _r0_x*(d_T_1_xy*s_2 - c_2*d_T_1_xx) - w_2_t*(_x_2*h_2_x - J_2_zz*w_2_t
-            - _x*h_2_y);
-        const real d_G_xy = _r0_x*d_Gamma_1_r0_y - d_mu_2_zy*w_2_t;
-        const real d_G_yy = _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2;
-        /* (prs-N35) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_G_xx;
-        const real Q_t_2 = R(0.5)*d_G_yy;
-        const real Q_t_3 = Q_t*axis_x_prs_axes2_in_base_x + axis_y_prs_axes2_in_base_x*d_G_xy;
-        const real Q_t_4 = Q_t*axis_x_prs_axes2_in_base_y + axis_y_prs_axes2_in_base_y*d_G_xy;
-        const real Q_t_5 = Q_t*axis_x_prs_axes2_in_base_z + axis_y_prs_axes2_in_base_z*d_G_xy;
-        const real Q_t_6 = Q_t_2*axis_y_prs_axes2_in_base_x;
-        const real Q_t_7 = Q_t_2*axis_y_prs_axes2_in_base_y;
-        const real Q_t_8 = Q_t_2*axis_y_prs_axes2_in_base_z;
-        const real Q_t_9 = Q_t_3*axis_x_prs_axes2_in_base_x + Q_t_6*axis_y_prs_axes2_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_x_prs_axes2_in_base_y + Q_t_4*axis_x_prs_axes2_in_base_x +
-            Q_t_6*axis_y_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_x +
-            Q_t_6*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_x_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_y +
-            Q_t_7*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_x_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
+        const real d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t;
+        const real d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t;
+        const real d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2;
+        const real d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2;
+        /* (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx -
+            axis_y_prs_axes2_in_base_x*d_G_yx;
+        const real d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx -
+            axis_y_prs_axes2_in_base_y*d_G_yx;
+        const real d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy -
+            axis_y_prs_axes2_in_base_x*d_G_yy;
+        const real d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy -
+            axis_y_prs_axes2_in_base_y*d_G_yy;
+        const real d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*d_c_in_base_x +
+            axis_y_prs_axes2_in_base_x*d_c_in_base_x_2;
+        const real d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*d_c_in_base_x +
+            axis_y_prs_axes2_in_base_y*d_c_in_base_x_2;
+        const real d_c_in_base_z = axis_x_prs_axes2_in_base_z*d_c_in_base_x +
+            axis_y_prs_axes2_in_base_z*d_c_in_base_x_2;
+        const real d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*d_c_in_base_y +
+            axis_y_prs_axes2_in_base_y*d_c_in_base_y_2;
+        const real d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*d_c_in_base_y +
+            axis_y_prs_axes2_in_base_z*d_c_in_base_y_2;
+        const real d_c_in_base_z_3 =
+            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
+            axis_y_prs_axes2_in_base_z*d_G_yx) +
+            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
+            axis_y_prs_axes2_in_base_z*d_G_yy);
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
+        const real M_ta_t = d_c_in_base_y_3*q_in_base_z;
+        const real M_ta_t_2 = d_c_in_base_z*q_in_base_y;
         const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_7 = Q_t_15*q_in_base_x;
+        const real M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x;
+        const real M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x;
+        const real M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y;
+        const real M_ta_t_7 = d_c_in_base_z_2*q_in_base_x;
         const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
+        const real M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x;
+        const real M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y;
+        const real M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x;
         const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
@@ -832,42 +826,45 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         /* (prs-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y);
         const real qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y;
-        /* (prs-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_x = -g_r0_x - qdd_1_o_t;
-        /* (prs-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2;
         const real acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2;
-        /* (prs-N14) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x;
         const real f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o;
         /* (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2;
-        /* (prs-N19) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y;
         /* (prs-N31) remainder without the acceleration in: force at the connection point that balances
            the leg's inertia and weight along all freedoms */
         const real G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t);
-        const real _r0_x_2 = -G_o_t*s_2 - T_1_o_x*c_2;
-        const real _r0_y_2 = G_o_t*c_2 - T_1_o_x*s_2;
+        const real _r0_x_4 = -G_o_t*s_2 - T_1_o_x*c_2;
+        const real _r0_y_4 = G_o_t*c_2 - T_1_o_x*s_2;
         /* (prs-N36) velocity and gravity terms of the leg force */
-        const real U_in_base_x = _r0_x_2*axis_x_prs_axes2_in_base_x +
-            _r0_y_2*axis_y_prs_axes2_in_base_x;
-        const real U_in_base_y = _r0_x_2*axis_x_prs_axes2_in_base_y +
-            _r0_y_2*axis_y_prs_axes2_in_base_y;
-        const real U_in_base_z = _r0_x_2*axis_x_prs_axes2_in_base_z +
-            _r0_y_2*axis_y_prs_axes2_in_base_z;
+        const real U_in_base_x = _r0_x_4*axis_x_prs_axes2_in_base_x +
+            _r0_y_4*axis_y_prs_axes2_in_base_x;
+        const real U_in_base_y = _r0_x_4*axis_x_prs_axes2_in_base_y +
+            _r0_y_4*axis_y_prs_axes2_in_base_y;
+        const real U_in_base_z = _r0_x_4*axis_x_prs_axes2_in_base_z +
+            _r0_y_4*axis_y_prs_axes2_in_base_z;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
         /* (prs-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
-        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
+        const real w_1_in_base_x = _r0_x*axis_x_prs_axes2_in_base_x +
+            _r0_y*axis_y_prs_axes2_in_base_x;
+        const real w_1_in_base_y = _r0_x*axis_x_prs_axes2_in_base_y +
+            _r0_y*axis_y_prs_axes2_in_base_y;
+        const real w_1_in_base_z = _r0_x*axis_x_prs_axes2_in_base_z +
+            _r0_y*axis_y_prs_axes2_in_base_z;
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
         const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
@@ -876,12 +873,12 @@ INLINE void dynamics_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
         const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
         const real Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y;
-        o->sum[0][k] = Q_t_10;  /* total_prs_xx */
-        o->sum[1][k] = Q_t_11;  /* total_prs_xy */
-        o->sum[2][k] = Q_t_12;  /* total_prs_xz */
-        o->sum[3][k] = Q_t_14;  /* total_prs_yy */
-        o->sum[4][k] = Q_t_15;  /* total_prs_yz */
-        o->sum[5][k] = Q_t_17;  /* total_prs_zz */
+        o->sum[0][k] = d_c_in_base_x_3;  /* total_prs_xx */
+        o->sum[1][k] = d_c_in_base_y_3;  /* total_prs_xy */
+        o->sum[2][k] = d_c_in_base_z;  /* total_prs_xz */
+        o->sum[3][k] = d_c_in_base_y_4;  /* total_prs_yy */
+        o->sum[4][k] = d_c_in_base_z_2;  /* total_prs_yz */
+        o->sum[5][k] = d_c_in_base_z_3;  /* total_prs_zz */
         o->sum[6][k] = M_ta_t_3;  /* total_prs_xx_2 */
         o->sum[7][k] = M_ta_t_4;  /* total_prs_xy_2 */
         o->sum[8][k] = M_ta_t_5;  /* total_prs_xz_2 */
@@ -992,23 +989,23 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real total_prs_z_2 = s->sum[26][k];
         const real platform_mass = m->platform_mass;
         /* (M1) translational block of M */
-        const real M_tt_xx = platform_mass + total_prs_xx;
-        const real M_tt_yy = platform_mass + total_prs_yy;
-        const real M_tt_zz = platform_mass + total_prs_zz;
+        const real M_tt_xx = platform_mass - total_prs_xx;
+        const real M_tt_yy = platform_mass - total_prs_yy;
+        const real M_tt_zz = platform_mass - total_prs_zz;
         /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z + total_prs_xy_2;
-        const real M_ta_xz = -h_star_in_base_y - total_prs_xz_2;
-        const real M_ta_yx = -h_star_in_base_z - total_prs_yx;
-        const real M_ta_yz = h_star_in_base_x - total_prs_yz_2;
-        const real M_ta_zx = h_star_in_base_y - total_prs_zx;
-        const real M_ta_zy = total_prs_zy - h_star_in_base_x;
+        const real M_ta_xy = h_star_in_base_z - total_prs_xy_2;
+        const real M_ta_xz = total_prs_xz_2 - h_star_in_base_y;
+        const real M_ta_yx = total_prs_yx - h_star_in_base_z;
+        const real M_ta_yz = h_star_in_base_x + total_prs_yz_2;
+        const real M_ta_zx = h_star_in_base_y + total_prs_zx;
+        const real M_ta_zy = -h_star_in_base_x - total_prs_zy;
         /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_10 + total_prs_xx_3;
-        const real M_aa_xy = J_star_t_11 - total_prs_xy_3;
-        const real M_aa_xz = J_star_t_12 + total_prs_xz_3;
-        const real M_aa_yy = J_star_t_14 + total_prs_yy_3;
-        const real M_aa_yz = J_star_t_15 - total_prs_yz_3;
-        const real M_aa_zz = J_star_t_17 + total_prs_zz_3;
+        const real M_aa_xx = J_star_t_10 - total_prs_xx_3;
+        const real M_aa_xy = J_star_t_11 + total_prs_xy_3;
+        const real M_aa_xz = J_star_t_12 - total_prs_xz_3;
+        const real M_aa_yy = J_star_t_14 - total_prs_yy_3;
+        const real M_aa_yz = J_star_t_15 + total_prs_yz_3;
+        const real M_aa_zz = J_star_t_17 - total_prs_zz_3;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_prs_x;
         const real Z_t_y = Z_p_y + total_prs_y;
@@ -1018,32 +1015,32 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real Z_a_y = Z_q_in_base_y + total_prs_y_2;
         const real Z_a_z = Z_q_in_base_z + total_prs_z_2;
         M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_prs_xy;
-        M[6*w + k] = total_prs_xy;
-        M[2*w + k] = total_prs_xz;
-        M[12*w + k] = total_prs_xz;
+        M[1*w + k] = -total_prs_xy;
+        M[6*w + k] = -total_prs_xy;
+        M[2*w + k] = -total_prs_xz;
+        M[12*w + k] = -total_prs_xz;
         M[7*w + k] = M_tt_yy;
-        M[8*w + k] = total_prs_yz;
-        M[13*w + k] = total_prs_yz;
+        M[8*w + k] = -total_prs_yz;
+        M[13*w + k] = -total_prs_yz;
         M[14*w + k] = M_tt_zz;
-        M[3*w + k] = -total_prs_xx_2;
-        M[18*w + k] = -total_prs_xx_2;
+        M[3*w + k] = total_prs_xx_2;
+        M[18*w + k] = total_prs_xx_2;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        M[10*w + k] = total_prs_yy_2;
-        M[25*w + k] = total_prs_yy_2;
+        M[10*w + k] = -total_prs_yy_2;
+        M[25*w + k] = -total_prs_yy_2;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        M[17*w + k] = total_prs_zz_2;
-        M[32*w + k] = total_prs_zz_2;
+        M[17*w + k] = -total_prs_zz_2;
+        M[32*w + k] = -total_prs_zz_2;
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1108,7 +1105,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 18, w, code, H);
 }
 
-/* ---- M: 522 mul, 369 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 414 mul, 318 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1233,6 +1230,7 @@ INLINE void M_legs_prs(const prepared *m, size_t leg, size_t legs, const M_value
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
         const real J_2_zz = m->J_2_zz[i];
+        const real P_c1_t = m->P_c1_t[i];
         const real branch_1 = m->branch_1[i];
         const real h_2_x = m->h_2_x[i];
         const real h_2_y = m->h_2_y[i];
@@ -1248,8 +1246,6 @@ INLINE void M_legs_prs(const prepared *m, size_t leg, size_t legs, const M_value
         const real prs_base_point_x = m->prs_base_point_x[i];
         const real prs_base_point_y = m->prs_base_point_y[i];
         const real prs_base_point_z = m->prs_base_point_z[i];
-        const real prs_link1_mass = m->prs_link1_mass[i];
-        const real prs_link2_mass = m->prs_link2_mass[i];
         const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
         const real prs_platform_point_x = m->prs_platform_point_x[i];
         const real prs_platform_point_y = m->prs_platform_point_y[i];
@@ -1292,81 +1288,72 @@ INLINE void M_legs_prs(const prepared *m, size_t leg, size_t legs, const M_value
         const real axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx;
         const real axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx;
         const real axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx;
+        /* (prs-N11) force that accelerates joint 2, per unit */
+        const real P_c2_r0_x = c_2*h_2_y - h_2_x*s_2;
         /* (prs-V2) velocity of the connection point per rate of joint 2 */
-        const real v_2_t = c_2*prs_platform_joint_offset_x;
+        const real v_2_t = prs_platform_joint_offset_x*s_2;
+        const real v_2_t_2 = c_2*prs_platform_joint_offset_x;
         /* (prs-V3) reciprocal vector 1 */
-        const real inv_v_2_t_2 = 1/v_2_t;
-        const real w_1_t = inv_v_2_t_2*prs_platform_joint_offset_x*s_2;
+        const real inv_v_2_t_2 = 1/v_2_t_2;
+        const real w_1_t = inv_v_2_t_2*v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
         /* (prs-V4) reciprocal vector 2 */
         const real w_2_t = inv_v_2_t_2*s_2;
         const real w_2_t_2 = c_2*inv_v_2_t_2;
-        /* (prs-A17) coefficient of the acceleration in: acceleration of the origin of joint 2 */
-        const real d_a_o2_t = c_2*w_1_r0_x;
-        const real d_a_o2_t_2 = s_2*w_1_r0_x;
-        const real d_a_o2_t_3 = c_2*w_1_r0_y;
-        const real d_a_o2_t_4 = s_2*w_1_r0_y;
-        const real _x = c_2*d_a_o2_t - d_a_o2_t_3*s_2;
-        const real _y = c_2*d_a_o2_t_3 + d_a_o2_t*s_2;
-        const real _x_2 = c_2*d_a_o2_t_2 - d_a_o2_t_4*s_2;
-        const real _y_2 = c_2*d_a_o2_t_4 + d_a_o2_t_2*s_2;
-        /* (prs-N13) coefficient of the acceleration in: inertia force of link 2 less its weight */
-        const real _x_3 = -c_2*(_x*prs_link2_mass + h_2_y*w_2_t) - s_2*(_x_2*prs_link2_mass -
-            h_2_x*w_2_t);
-        const real _x_4 = -c_2*(_y*prs_link2_mass - h_2_y*w_2_t_2) - s_2*(_y_2*prs_link2_mass +
-            h_2_x*w_2_t_2);
-        /* (prs-N24) coefficient of the acceleration in: inertia force of the links from 1 outwards, the
-           last link left out */
-        const real d_T_1_xx = prs_link1_mass*w_1_r0_x - _x_3*c_2 - _x_4*s_2;
-        const real d_T_1_xy = _x_3*s_2 + prs_link1_mass*w_1_r0_y - _x_4*c_2;
-        /* (prs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link
-           2, about their reference points */
-        const real d_mu_2_zy = J_2_zz*w_2_t_2 + _y_2*h_2_x - _y*h_2_y;
         /* (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_r0_y = -c_2*d_T_1_xy - d_T_1_xx*s_2;
+        const real d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t);
+        const real _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2;
+        const real _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2;
+        /* (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia
+           and weight */
+        const real d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t);
+        const real _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2;
+        const real _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2;
         /* (prs-N30) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_xx = _r0_x*(d_T_1_xy*s_2 - c_2*d_T_1_xx) - w_2_t*(_x_2*h_2_x - J_2_zz*w_2_t
-            - _x*h_2_y);
-        const real d_G_xy = _r0_x*d_Gamma_1_r0_y - d_mu_2_zy*w_2_t;
-        const real d_G_yy = _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2;
-        /* (prs-N35) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_G_xx;
-        const real Q_t_2 = R(0.5)*d_G_yy;
-        const real Q_t_3 = Q_t*axis_x_prs_axes2_in_base_x + axis_y_prs_axes2_in_base_x*d_G_xy;
-        const real Q_t_4 = Q_t*axis_x_prs_axes2_in_base_y + axis_y_prs_axes2_in_base_y*d_G_xy;
-        const real Q_t_5 = Q_t*axis_x_prs_axes2_in_base_z + axis_y_prs_axes2_in_base_z*d_G_xy;
-        const real Q_t_6 = Q_t_2*axis_y_prs_axes2_in_base_x;
-        const real Q_t_7 = Q_t_2*axis_y_prs_axes2_in_base_y;
-        const real Q_t_8 = Q_t_2*axis_y_prs_axes2_in_base_z;
-        const real Q_t_9 = Q_t_3*axis_x_prs_axes2_in_base_x + Q_t_6*axis_y_prs_axes2_in_base_x;
-        const real Q_t_10 = 2*Q_t_9;
-        const real Q_t_11 = Q_t_3*axis_x_prs_axes2_in_base_y + Q_t_4*axis_x_prs_axes2_in_base_x +
-            Q_t_6*axis_y_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_x;
-        const real Q_t_12 = Q_t_3*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_x +
-            Q_t_6*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_x;
-        const real Q_t_13 = Q_t_4*axis_x_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_y;
-        const real Q_t_14 = 2*Q_t_13;
-        const real Q_t_15 = Q_t_4*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_y +
-            Q_t_7*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_y;
-        const real Q_t_16 = Q_t_5*axis_x_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_z;
-        const real Q_t_17 = 2*Q_t_16;
+        const real d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t;
+        const real d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t;
+        const real d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2;
+        const real d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2;
+        /* (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx -
+            axis_y_prs_axes2_in_base_x*d_G_yx;
+        const real d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx -
+            axis_y_prs_axes2_in_base_y*d_G_yx;
+        const real d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy -
+            axis_y_prs_axes2_in_base_x*d_G_yy;
+        const real d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy -
+            axis_y_prs_axes2_in_base_y*d_G_yy;
+        const real d_c_in_base_x_3 = axis_x_prs_axes2_in_base_x*d_c_in_base_x +
+            axis_y_prs_axes2_in_base_x*d_c_in_base_x_2;
+        const real d_c_in_base_y_3 = axis_x_prs_axes2_in_base_y*d_c_in_base_x +
+            axis_y_prs_axes2_in_base_y*d_c_in_base_x_2;
+        const real d_c_in_base_z = axis_x_prs_axes2_in_base_z*d_c_in_base_x +
+            axis_y_prs_axes2_in_base_z*d_c_in_base_x_2;
+        const real d_c_in_base_y_4 = axis_x_prs_axes2_in_base_y*d_c_in_base_y +
+            axis_y_prs_axes2_in_base_y*d_c_in_base_y_2;
+        const real d_c_in_base_z_2 = axis_x_prs_axes2_in_base_z*d_c_in_base_y +
+            axis_y_prs_axes2_in_base_z*d_c_in_base_y_2;
+        const real d_c_in_base_z_3 =
+            axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
+            axis_y_prs_axes2_in_base_z*d_G_yx) +
+            axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
+            axis_y_prs_axes2_in_base_z*d_G_yy);
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_11*q_in_base_z;
-        const real M_ta_t_2 = Q_t_12*q_in_base_y;
+        const real M_ta_t = d_c_in_base_y_3*q_in_base_z;
+        const real M_ta_t_2 = d_c_in_base_z*q_in_base_y;
         const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x;
-        const real M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x;
-        const real M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y;
-        const real M_ta_t_7 = Q_t_15*q_in_base_x;
+        const real M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x;
+        const real M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x;
+        const real M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y;
+        const real M_ta_t_7 = d_c_in_base_z_2*q_in_base_x;
         const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x;
-        const real M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x;
+        const real M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x;
+        const real M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y;
+        const real M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x;
         const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
@@ -1375,12 +1362,12 @@ INLINE void M_legs_prs(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
         const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
         const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = Q_t_10;  /* total_prs_xx */
-        o->sum[1][k] = Q_t_11;  /* total_prs_xy */
-        o->sum[2][k] = Q_t_12;  /* total_prs_xz */
-        o->sum[3][k] = Q_t_14;  /* total_prs_yy */
-        o->sum[4][k] = Q_t_15;  /* total_prs_yz */
-        o->sum[5][k] = Q_t_17;  /* total_prs_zz */
+        o->sum[0][k] = d_c_in_base_x_3;  /* total_prs_xx */
+        o->sum[1][k] = d_c_in_base_y_3;  /* total_prs_xy */
+        o->sum[2][k] = d_c_in_base_z;  /* total_prs_xz */
+        o->sum[3][k] = d_c_in_base_y_4;  /* total_prs_yy */
+        o->sum[4][k] = d_c_in_base_z_2;  /* total_prs_yz */
+        o->sum[5][k] = d_c_in_base_z_3;  /* total_prs_zz */
         o->sum[6][k] = M_ta_t_3;  /* total_prs_xx_2 */
         o->sum[7][k] = M_ta_t_4;  /* total_prs_xy_2 */
         o->sum[8][k] = M_ta_t_5;  /* total_prs_xz_2 */
@@ -1398,7 +1385,7 @@ INLINE void M_legs_prs(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[20][k] = M_aa_t_6;  /* total_prs_zz_3 */
         o->unreachable[k] = unless(disc_1 >= 0);
         o->singular[k] = unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
-            unless(magnitude(-v_2_t) > TOLERANCE*size_);
+            unless(magnitude(-v_2_t_2) > TOLERANCE*size_);
     }
 }
 
@@ -1445,50 +1432,50 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_prs_zz_3 = s->sum[20][k];
         const real platform_mass = m->platform_mass;
         /* (M1) translational block of M */
-        const real M_tt_xx = platform_mass + total_prs_xx;
-        const real M_tt_yy = platform_mass + total_prs_yy;
-        const real M_tt_zz = platform_mass + total_prs_zz;
+        const real M_tt_xx = platform_mass - total_prs_xx;
+        const real M_tt_yy = platform_mass - total_prs_yy;
+        const real M_tt_zz = platform_mass - total_prs_zz;
         /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z + total_prs_xy_2;
-        const real M_ta_xz = -h_star_in_base_y - total_prs_xz_2;
-        const real M_ta_yx = -h_star_in_base_z - total_prs_yx;
-        const real M_ta_yz = h_star_in_base_x - total_prs_yz_2;
-        const real M_ta_zx = h_star_in_base_y - total_prs_zx;
-        const real M_ta_zy = total_prs_zy - h_star_in_base_x;
+        const real M_ta_xy = h_star_in_base_z - total_prs_xy_2;
+        const real M_ta_xz = total_prs_xz_2 - h_star_in_base_y;
+        const real M_ta_yx = total_prs_yx - h_star_in_base_z;
+        const real M_ta_yz = h_star_in_base_x + total_prs_yz_2;
+        const real M_ta_zx = h_star_in_base_y + total_prs_zx;
+        const real M_ta_zy = -h_star_in_base_x - total_prs_zy;
         /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_10 + total_prs_xx_3;
-        const real M_aa_xy = J_star_t_11 - total_prs_xy_3;
-        const real M_aa_xz = J_star_t_12 + total_prs_xz_3;
-        const real M_aa_yy = J_star_t_14 + total_prs_yy_3;
-        const real M_aa_yz = J_star_t_15 - total_prs_yz_3;
-        const real M_aa_zz = J_star_t_17 + total_prs_zz_3;
+        const real M_aa_xx = J_star_t_10 - total_prs_xx_3;
+        const real M_aa_xy = J_star_t_11 + total_prs_xy_3;
+        const real M_aa_xz = J_star_t_12 - total_prs_xz_3;
+        const real M_aa_yy = J_star_t_14 - total_prs_yy_3;
+        const real M_aa_yz = J_star_t_15 + total_prs_yz_3;
+        const real M_aa_zz = J_star_t_17 - total_prs_zz_3;
         M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_prs_xy;
-        M[6*w + k] = total_prs_xy;
-        M[2*w + k] = total_prs_xz;
-        M[12*w + k] = total_prs_xz;
+        M[1*w + k] = -total_prs_xy;
+        M[6*w + k] = -total_prs_xy;
+        M[2*w + k] = -total_prs_xz;
+        M[12*w + k] = -total_prs_xz;
         M[7*w + k] = M_tt_yy;
-        M[8*w + k] = total_prs_yz;
-        M[13*w + k] = total_prs_yz;
+        M[8*w + k] = -total_prs_yz;
+        M[13*w + k] = -total_prs_yz;
         M[14*w + k] = M_tt_zz;
-        M[3*w + k] = -total_prs_xx_2;
-        M[18*w + k] = -total_prs_xx_2;
+        M[3*w + k] = total_prs_xx_2;
+        M[18*w + k] = total_prs_xx_2;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        M[10*w + k] = total_prs_yy_2;
-        M[25*w + k] = total_prs_yy_2;
+        M[10*w + k] = -total_prs_yy_2;
+        M[25*w + k] = -total_prs_yy_2;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        M[17*w + k] = total_prs_zz_2;
-        M[32*w + k] = total_prs_zz_2;
+        M[17*w + k] = -total_prs_zz_2;
+        M[32*w + k] = -total_prs_zz_2;
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1792,20 +1779,20 @@ INLINE void Z_legs_prs(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (prs-A8) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y);
         const real qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y;
-        /* (prs-N3) remainder without the acceleration in: acceleration of the reference point of link 1,
+        /* (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real acc_1_o_x = -g_r0_x - qdd_1_o_t;
-        /* (prs-N8) remainder without the acceleration in: acceleration of the reference point of link 2,
+        /* (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2;
         const real acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2;
-        /* (prs-N14) remainder without the acceleration in: inertia force of link 2 less its weight */
+        /* (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight */
         const real f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x;
         const real f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o;
         /* (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards,
            the last link left out */
         const real T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2;
-        /* (prs-N19) remainder without the acceleration in: inertia moment of the links that turn with
+        /* (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with
            link 2, about their reference points */
         const real mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y;
         /* (prs-N31) remainder without the acceleration in: force at the connection point that balances
@@ -1916,7 +1903,7 @@ INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, rea
     deliver(Z_of, 6, w, code, Z);
 }
 
-/* ---- H: 153 mul, 102 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- H: 177 mul, 114 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
@@ -2050,11 +2037,12 @@ INLINE void H_legs_prs(const prepared *m, size_t leg, size_t legs, const H_value
         const real w_1_t = prs_platform_joint_offset_x*s_2/v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
-        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
-        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
+        const real w_1_in_base_x = _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) +
+            _r0_y*(-c_2*prs_base_frame_xy - prs_base_frame_xx*s_2);
+        const real w_1_in_base_y = _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) +
+            _r0_y*(-c_2*prs_base_frame_yy - prs_base_frame_yx*s_2);
+        const real w_1_in_base_z = _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) +
+            _r0_y*(-c_2*prs_base_frame_zy - prs_base_frame_zx*s_2);
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
         const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
@@ -2663,8 +2651,6 @@ INLINE void required_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real w_1_t = inv_v_2_t_2*v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
         /* (prs-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -2677,14 +2663,6 @@ INLINE void required_legs_prs(const prepared *m, size_t leg, size_t legs, const 
             S_dot_z*prs_base_frame_zy);
         /* (prs-V8) centripetal tensor of link 2 */
         const real W_2_t = qd_2*qd_2;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
-        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
-        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
-        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
         /* (M9) moment of the column's unit force about the platform origin */
         const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
         const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
@@ -2710,15 +2688,15 @@ INLINE void required_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t;
         /* (prs-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_x = -g_r0_x - qdd_1_t;
-        /* (prs-N7) acceleration of the reference point of link 2, less gravity */
+        /* (prs-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2;
         const real acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2;
-        /* (prs-N12) inertia force of link 2 less its weight */
+        /* (prs-N9) inertia force of link 2 less its weight */
         const real f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x;
         const real f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2;
-        /* (prs-N23) inertia force of the links from 1 outwards, the last link left out */
+        /* (prs-N24) inertia force of the links from 1 outwards, the last link left out */
         const real T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2;
-        /* (prs-N17) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prs-N19) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y;
         /* (prs-N29) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
@@ -2736,6 +2714,16 @@ INLINE void required_legs_prs(const prepared *m, size_t leg, size_t legs, const 
         const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
         const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
         const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
+        /* (prs-V3) reciprocal vector 1 */
+        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
+        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
+        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
+        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
+        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
+        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
+        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
         o->sum[0][k] = c_in_base_x;  /* total_prs_x */
         o->sum[1][k] = c_in_base_y;  /* total_prs_y */
         o->sum[2][k] = c_in_base_z;  /* total_prs_z */
@@ -3841,8 +3829,6 @@ INLINE void legs_legs_prs(const prepared *m, size_t leg, size_t legs, const legs
         const real w_1_t = inv_v_2_t_2*v_2_t;
         const real _r0_x = -c_2 - s_2*w_1_t;
         const real _r0_y = c_2*w_1_t - s_2;
-        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
-        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
         /* (prs-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3855,10 +3841,6 @@ INLINE void legs_legs_prs(const prepared *m, size_t leg, size_t legs, const legs
             S_dot_z*prs_base_frame_zy);
         /* (prs-V8) centripetal tensor of link 2 */
         const real W_2_t = qd_2*qd_2;
-        /* (prs-V3) reciprocal vector 1 */
-        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
-        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
-        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
         /* (prs-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -3880,15 +3862,15 @@ INLINE void legs_legs_prs(const prepared *m, size_t leg, size_t legs, const legs
         const real qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t;
         /* (prs-N1) acceleration of the reference point of link 1, less gravity */
         const real acc_1_x = -g_r0_x - qdd_1_t;
-        /* (prs-N7) acceleration of the reference point of link 2, less gravity */
+        /* (prs-N5) acceleration of the reference point of link 2, less gravity */
         const real acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2;
         const real acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2;
-        /* (prs-N12) inertia force of link 2 less its weight */
+        /* (prs-N9) inertia force of link 2 less its weight */
         const real f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x;
         const real f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2;
-        /* (prs-N23) inertia force of the links from 1 outwards, the last link left out */
+        /* (prs-N24) inertia force of the links from 1 outwards, the last link left out */
         const real T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2;
-        /* (prs-N17) inertia moment of the links that turn with link 2, about their reference points */
+        /* (prs-N19) inertia moment of the links that turn with link 2, about their reference points */
         const real mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y;
         /* (prs-N29) force at the connection point that balances the leg's inertia and weight along all
            freedoms */
@@ -3902,6 +3884,12 @@ INLINE void legs_legs_prs(const prepared *m, size_t leg, size_t legs, const legs
         const real c_in_base_x = c_r0_x*prs_base_frame_xx + c_r0_y*prs_base_frame_xy;
         const real c_in_base_y = c_r0_x*prs_base_frame_yx + c_r0_y*prs_base_frame_yy;
         const real c_in_base_z = c_r0_x*prs_base_frame_zx + c_r0_y*prs_base_frame_zy;
+        /* (prs-V3) reciprocal vector 1 */
+        const real w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2;
+        const real w_1_r0_y = _r0_x*s_2 - _r0_y*c_2;
+        const real w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y;
+        const real w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y;
+        const real w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y;
         o->entry[0][k] = c_in_base_x;
         o->entry[1][k] = c_in_base_y;
         o->entry[2][k] = c_in_base_z;

@@ -89,8 +89,8 @@ typedef struct {
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
             h_star_z, platform_mass;
     /* legs of type prs */
-    tripod_3prs_real J_2_zz[3], b_r0_x[3], branch_1[3], g_r0_x[3], g_r0_y[3], h_1_x[3], h_1_y[3],
-            h_2_x[3], h_2_y[3], potential_t[3], potential_t_2[3], potential_t_3[3],
+    tripod_3prs_real J_2_zz[3], P_c1_t[3], b_r0_x[3], branch_1[3], g_r0_x[3], g_r0_y[3], h_1_x[3],
+            h_1_y[3], h_2_x[3], h_2_y[3], potential_t[3], potential_t_2[3], potential_t_3[3],
             prs_base_frame_xx[3], prs_base_frame_xy[3], prs_base_frame_xz[3], prs_base_frame_yx[3],
             prs_base_frame_yy[3], prs_base_frame_yz[3], prs_base_frame_zx[3], prs_base_frame_zy[3],
             prs_base_frame_zz[3], prs_base_point_x[3], prs_base_point_y[3], prs_base_point_z[3],
@@ -108,7 +108,7 @@ extern const tripod_3prs_real tripod_3prs_HOME_Q[TRIPOD_3PRS_NJ];
    model is all NaN. */
 int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *model);
 
-/* Inertia matrix M. 522 mul, 369 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 414 mul, 318 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3prs_M(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *M);
 size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     tripod_3prs_real *M, int *status);
@@ -120,7 +120,7 @@ int tripod_3prs_Z(const tripod_3prs_model *model, const tripod_3prs_real *X, con
 size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     const tripod_3prs_real *V, tripod_3prs_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 153 mul, 102 add, 6 div, 6 sqrt, 0 trig. In: X
+/* Force transformation H: actuators to task space. 177 mul, 114 add, 6 div, 6 sqrt, 0 trig. In: X
    (NQ). Out: H (NV x NU). */
 int tripod_3prs_H(const tripod_3prs_model *model, const tripod_3prs_real *X, tripod_3prs_real *H);
 size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
@@ -133,7 +133,7 @@ int tripod_3prs_Hk(const tripod_3prs_model *model, const tripod_3prs_real *X, tr
 size_t tripod_3prs_Hk_batch(const tripod_3prs_model *model, size_t n, const tripod_3prs_real *X,
     tripod_3prs_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 846 mul, 591 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 738 mul, 540 add, 6 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3prs_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const
     tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H);
@@ -187,7 +187,7 @@ size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t
     tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
     tripod_3prs_real *wrench, tripod_3prs_real *tau, tripod_3prs_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 846 mul, 591 add, 6 div, 6 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 738 mul, 540 add, 6 div, 6 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3prs_forward_dynamics(const tripod_3prs_model *model, const tripod_3prs_real *X, const

@@ -341,6 +341,8 @@ def _prepare(p):
     size = sqrt(size_t_3)
     # (prs-K8) amplitude: off the manifold the nearest angle is taken
     root_2_t = size*size*size_t_3
+    # (prs-N15) force that accelerates joint 1, per unit
+    P_c1_t = prs_link1_mass + prs_link2_mass
     # (prs-G3) first moment of link 2 about the origin of link 2
     h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass
     h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass
@@ -351,7 +353,7 @@ def _prepare(p):
         prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y
     )
     J_2_zz = prs_link2_inertia_zz - prs_link2_mass*(J_2_t - J_2_t_2)
-    # (prs-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = (
     gravity_x*prs_base_frame_xx + gravity_y*prs_base_frame_yx + gravity_z*prs_base_frame_zx
     )
@@ -404,6 +406,7 @@ def _prepare(p):
     legs = {
         "prs": {
             "J_2_zz": np.broadcast_to(J_2_zz, _prs),
+            "P_c1_t": np.broadcast_to(P_c1_t, _prs),
             "b_r0_x": np.broadcast_to(b_r0_x, _prs),
             "branch_1": np.broadcast_to(branch_1, _prs),
             "g_r0_x": np.broadcast_to(g_r0_x, _prs),
@@ -589,7 +592,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 846 mul, 591 add, 6 div, 6 sqrt, 0 trig
+# dynamics: 738 mul, 540 add, 6 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -697,7 +700,7 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_prs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_2_zz, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
+    J_2_zz, P_c1_t, branch_1, g_r0_x, g_r0_y, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
         prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
         prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
         prs_base_point_y, prs_base_point_z, prs_link1_mass, prs_link2_mass,
@@ -745,6 +748,8 @@ def _dynamics_prs(c, k, x, s, f):
     axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx
     axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx
     axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx
+    # (prs-N11) force that accelerates joint 2, per unit
+    P_c2_r0_x = c_2*h_2_y - h_2_x*s_2
     # (prs-V2) velocity of the connection point per rate of joint 2
     v_2_t = prs_platform_joint_offset_x*s_2
     v_2_t_2 = c_2*prs_platform_joint_offset_x
@@ -753,73 +758,60 @@ def _dynamics_prs(c, k, x, s, f):
     w_1_t = inv_v_2_t_2*v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
     # (prs-V4) reciprocal vector 2
     w_2_t = inv_v_2_t_2*s_2
     w_2_t_2 = c_2*inv_v_2_t_2
-    # (prs-A17) coefficient of the acceleration in: acceleration of the origin of joint 2
-    d_a_o2_t = c_2*w_1_r0_x
-    d_a_o2_t_2 = s_2*w_1_r0_x
-    d_a_o2_t_3 = c_2*w_1_r0_y
-    d_a_o2_t_4 = s_2*w_1_r0_y
-    _x = c_2*d_a_o2_t - d_a_o2_t_3*s_2
-    _y = c_2*d_a_o2_t_3 + d_a_o2_t*s_2
-    _x_2 = c_2*d_a_o2_t_2 - d_a_o2_t_4*s_2
-    _y_2 = c_2*d_a_o2_t_4 + d_a_o2_t_2*s_2
-    # (prs-N13) coefficient of the acceleration in: inertia force of link 2 less its weight
-    _x_3 = -c_2*(_x*prs_link2_mass + h_2_y*w_2_t) - s_2*(_x_2*prs_link2_mass - h_2_x*w_2_t)
-    _x_4 = -c_2*(_y*prs_link2_mass - h_2_y*w_2_t_2) - s_2*(_y_2*prs_link2_mass + h_2_x*w_2_t_2)
-    # (prs-N24) coefficient of the acceleration in: inertia force of the links from 1 outwards, the last link left out
-    d_T_1_xx = prs_link1_mass*w_1_r0_x - _x_3*c_2 - _x_4*s_2
-    d_T_1_xy = _x_3*s_2 + prs_link1_mass*w_1_r0_y - _x_4*c_2
-    # (prs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_zy = J_2_zz*w_2_t_2 + _y_2*h_2_x - _y*h_2_y
     # (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = -c_2*d_T_1_xy - d_T_1_xx*s_2
+    d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t)
+    _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2
+    _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2
+    # (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t)
+    _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2
+    _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2
     # (prs-N30) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_xx = _r0_x*(d_T_1_xy*s_2 - c_2*d_T_1_xx) - w_2_t*(_x_2*h_2_x - J_2_zz*w_2_t - _x*h_2_y)
-    d_G_xy = _r0_x*d_Gamma_1_r0_y - d_mu_2_zy*w_2_t
-    d_G_yy = _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2
-    # (prs-N35) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*d_G_xx
-    Q_t_2 = 0.5*d_G_yy
-    Q_t_3 = Q_t*axis_x_prs_axes2_in_base_x + axis_y_prs_axes2_in_base_x*d_G_xy
-    Q_t_4 = Q_t*axis_x_prs_axes2_in_base_y + axis_y_prs_axes2_in_base_y*d_G_xy
-    Q_t_5 = Q_t*axis_x_prs_axes2_in_base_z + axis_y_prs_axes2_in_base_z*d_G_xy
-    Q_t_6 = Q_t_2*axis_y_prs_axes2_in_base_x
-    Q_t_7 = Q_t_2*axis_y_prs_axes2_in_base_y
-    Q_t_8 = Q_t_2*axis_y_prs_axes2_in_base_z
-    Q_t_9 = Q_t_3*axis_x_prs_axes2_in_base_x + Q_t_6*axis_y_prs_axes2_in_base_x
-    Q_t_10 = 2.0*Q_t_9
-    Q_t_11 = (
-    Q_t_3*axis_x_prs_axes2_in_base_y + Q_t_4*axis_x_prs_axes2_in_base_x +
-        Q_t_6*axis_y_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_x
+    d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t
+    d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t
+    d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2
+    d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2
+    # (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx - axis_y_prs_axes2_in_base_x*d_G_yx
+    d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx - axis_y_prs_axes2_in_base_y*d_G_yx
+    d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy - axis_y_prs_axes2_in_base_x*d_G_yy
+    d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy - axis_y_prs_axes2_in_base_y*d_G_yy
+    d_c_in_base_x_3 = (
+    axis_x_prs_axes2_in_base_x*d_c_in_base_x + axis_y_prs_axes2_in_base_x*d_c_in_base_x_2
     )
-    Q_t_12 = (
-    Q_t_3*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_x +
-        Q_t_6*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_x
+    d_c_in_base_y_3 = (
+    axis_x_prs_axes2_in_base_y*d_c_in_base_x + axis_y_prs_axes2_in_base_y*d_c_in_base_x_2
     )
-    Q_t_13 = Q_t_4*axis_x_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_y
-    Q_t_14 = 2.0*Q_t_13
-    Q_t_15 = (
-    Q_t_4*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_y +
-        Q_t_7*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_y
+    d_c_in_base_z = (
+    axis_x_prs_axes2_in_base_z*d_c_in_base_x + axis_y_prs_axes2_in_base_z*d_c_in_base_x_2
     )
-    Q_t_16 = Q_t_5*axis_x_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_z
-    Q_t_17 = 2.0*Q_t_16
+    d_c_in_base_y_4 = (
+    axis_x_prs_axes2_in_base_y*d_c_in_base_y + axis_y_prs_axes2_in_base_y*d_c_in_base_y_2
+    )
+    d_c_in_base_z_2 = (
+    axis_x_prs_axes2_in_base_z*d_c_in_base_y + axis_y_prs_axes2_in_base_z*d_c_in_base_y_2
+    )
+    d_c_in_base_z_3 = (
+    axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
+        axis_y_prs_axes2_in_base_z*d_G_yx) +
+        axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
+        axis_y_prs_axes2_in_base_z*d_G_yy)
+    )
     # (M2) coupling block of M
-    M_ta_t = Q_t_11*q_in_base_z
-    M_ta_t_2 = Q_t_12*q_in_base_y
+    M_ta_t = d_c_in_base_y_3*q_in_base_z
+    M_ta_t_2 = d_c_in_base_z*q_in_base_y
     M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-    M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-    M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-    M_ta_t_7 = Q_t_15*q_in_base_x
+    M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
+    M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
+    M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
+    M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
     M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-    M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
+    M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
+    M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
+    M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
     M_ta_t_12 = M_ta_t_7 - M_ta_t_2
     # (M3) rotational block of M
     M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
@@ -859,34 +851,34 @@ def _dynamics_prs(c, k, x, s, f):
     # (prs-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
     qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y
-    # (prs-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_x = -g_r0_x - qdd_1_o_t
-    # (prs-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2
     acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2
-    # (prs-N14) remainder without the acceleration in: inertia force of link 2 less its weight
+    # (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x
     f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o
     # (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
     T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2
-    # (prs-N19) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
     # (prs-N31) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t)
-    _r0_x_2 = -G_o_t*s_2 - T_1_o_x*c_2
-    _r0_y_2 = G_o_t*c_2 - T_1_o_x*s_2
+    _r0_x_4 = -G_o_t*s_2 - T_1_o_x*c_2
+    _r0_y_4 = G_o_t*c_2 - T_1_o_x*s_2
     # (prs-N36) velocity and gravity terms of the leg force
-    U_in_base_x = _r0_x_2*axis_x_prs_axes2_in_base_x + _r0_y_2*axis_y_prs_axes2_in_base_x
-    U_in_base_y = _r0_x_2*axis_x_prs_axes2_in_base_y + _r0_y_2*axis_y_prs_axes2_in_base_y
-    U_in_base_z = _r0_x_2*axis_x_prs_axes2_in_base_z + _r0_y_2*axis_y_prs_axes2_in_base_z
+    U_in_base_x = _r0_x_4*axis_x_prs_axes2_in_base_x + _r0_y_4*axis_y_prs_axes2_in_base_x
+    U_in_base_y = _r0_x_4*axis_x_prs_axes2_in_base_y + _r0_y_4*axis_y_prs_axes2_in_base_y
+    U_in_base_z = _r0_x_4*axis_x_prs_axes2_in_base_z + _r0_y_4*axis_y_prs_axes2_in_base_z
     # (M7) rotational part of Z
     Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z
     Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x
     Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (prs-V3) reciprocal vector 1
-    w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
-    w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
-    w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
+    w_1_in_base_x = _r0_x*axis_x_prs_axes2_in_base_x + _r0_y*axis_y_prs_axes2_in_base_x
+    w_1_in_base_y = _r0_x*axis_x_prs_axes2_in_base_y + _r0_y*axis_y_prs_axes2_in_base_y
+    w_1_in_base_z = _r0_x*axis_x_prs_axes2_in_base_z + _r0_y*axis_y_prs_axes2_in_base_z
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
     H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
@@ -897,12 +889,12 @@ def _dynamics_prs(c, k, x, s, f):
     Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
     ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (
-    ok, (Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
-        (w_1_in_base_x, w_1_in_base_y, w_1_in_base_z, H_a_1_x, H_a_1_y, H_a_1_z,
-        prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
-        u_1_tip_z,),
+    ok, (d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
+        d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10,
+        M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (w_1_in_base_x,
+        w_1_in_base_y, w_1_in_base_z, H_a_1_x, H_a_1_y, H_a_1_z, prs_base_frame_xz,
+        prs_base_frame_yz, prs_base_frame_zz, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z, u_1_tip_z,),
     )
 
 
@@ -921,23 +913,23 @@ def _dynamics_after(c, s, t, f):
         total_prs_x, total_prs_y, total_prs_z, total_prs_x_2, total_prs_y_2, total_prs_z_2,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = platform_mass + total_prs_xx
-    M_tt_yy = platform_mass + total_prs_yy
-    M_tt_zz = platform_mass + total_prs_zz
+    M_tt_xx = platform_mass - total_prs_xx
+    M_tt_yy = platform_mass - total_prs_yy
+    M_tt_zz = platform_mass - total_prs_zz
     # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z + total_prs_xy_2
-    M_ta_xz = -h_star_in_base_y - total_prs_xz_2
-    M_ta_yx = -h_star_in_base_z - total_prs_yx
-    M_ta_yz = h_star_in_base_x - total_prs_yz_2
-    M_ta_zx = h_star_in_base_y - total_prs_zx
-    M_ta_zy = total_prs_zy - h_star_in_base_x
+    M_ta_xy = h_star_in_base_z - total_prs_xy_2
+    M_ta_xz = total_prs_xz_2 - h_star_in_base_y
+    M_ta_yx = total_prs_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_prs_yz_2
+    M_ta_zx = h_star_in_base_y + total_prs_zx
+    M_ta_zy = -h_star_in_base_x - total_prs_zy
     # (M3) rotational block of M
-    M_aa_xx = J_star_t_10 + total_prs_xx_3
-    M_aa_xy = J_star_t_11 - total_prs_xy_3
-    M_aa_xz = J_star_t_12 + total_prs_xz_3
-    M_aa_yy = J_star_t_14 + total_prs_yy_3
-    M_aa_yz = J_star_t_15 - total_prs_yz_3
-    M_aa_zz = J_star_t_17 + total_prs_zz_3
+    M_aa_xx = J_star_t_10 - total_prs_xx_3
+    M_aa_xy = J_star_t_11 + total_prs_xy_3
+    M_aa_xz = J_star_t_12 - total_prs_xz_3
+    M_aa_yy = J_star_t_14 - total_prs_yy_3
+    M_aa_yz = J_star_t_15 + total_prs_yz_3
+    M_aa_zz = J_star_t_17 - total_prs_zz_3
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_prs_x
     Z_t_y = Z_p_y + total_prs_y
@@ -948,16 +940,16 @@ def _dynamics_after(c, s, t, f):
     Z_a_z = Z_q_in_base_z + total_prs_z_2
     ok = True
     return (
-    ok, (M_tt_xx, total_prs_xy, total_prs_xy, total_prs_xz, total_prs_xz, M_tt_yy, total_prs_yz,
-        total_prs_yz, M_tt_zz, -total_prs_xx_2, -total_prs_xx_2, M_ta_xy, M_ta_xy, M_ta_xz,
-        M_ta_xz, M_ta_yx, M_ta_yx, total_prs_yy_2, total_prs_yy_2, M_ta_yz, M_ta_yz, M_ta_zx,
-        M_ta_zx, M_ta_zy, M_ta_zy, total_prs_zz_2, total_prs_zz_2, M_aa_xx, M_aa_xy, M_aa_xy,
-        M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y,
-        Z_a_z,),
+    ok, (M_tt_xx, -total_prs_xy, -total_prs_xy, -total_prs_xz, -total_prs_xz, M_tt_yy,
+        -total_prs_yz, -total_prs_yz, M_tt_zz, total_prs_xx_2, total_prs_xx_2, M_ta_xy, M_ta_xy,
+        M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_prs_yy_2, -total_prs_yy_2, M_ta_yz, M_ta_yz,
+        M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_prs_zz_2, -total_prs_zz_2, M_aa_xx, M_aa_xy,
+        M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y, Z_t_z, Z_a_x,
+        Z_a_y, Z_a_z,),
     )
 
 
-# M: 522 mul, 369 add, 6 div, 6 sqrt, 0 trig
+# M: 414 mul, 318 add, 6 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1028,11 +1020,11 @@ def _M_before(c, X, f):
 def _M_prs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_2_zz, branch_1, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
-        prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
-        prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
-        prs_base_point_z, prs_link1_mass, prs_link2_mass, prs_platform_joint_offset_x,
-        prs_platform_point_x, prs_platform_point_y, prs_platform_point_z, root_2_t, size, uu_2_t,
+    J_2_zz, P_c1_t, branch_1, h_2_x, h_2_y, prs_base_frame_xx, prs_base_frame_xy,
+        prs_base_frame_xz, prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz,
+        prs_base_frame_zx, prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x,
+        prs_base_point_y, prs_base_point_z, prs_platform_joint_offset_x, prs_platform_point_x,
+        prs_platform_point_y, prs_platform_point_z, root_2_t, size, uu_2_t,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (prs-K1) from the base point to the connection point
@@ -1072,80 +1064,70 @@ def _M_prs(c, k, x, s, f):
     axis_x_prs_axes2_in_base_x = prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx
     axis_x_prs_axes2_in_base_y = prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx
     axis_x_prs_axes2_in_base_z = prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx
+    # (prs-N11) force that accelerates joint 2, per unit
+    P_c2_r0_x = c_2*h_2_y - h_2_x*s_2
     # (prs-V2) velocity of the connection point per rate of joint 2
-    v_2_t = c_2*prs_platform_joint_offset_x
+    v_2_t = prs_platform_joint_offset_x*s_2
+    v_2_t_2 = c_2*prs_platform_joint_offset_x
     # (prs-V3) reciprocal vector 1
-    inv_v_2_t_2 = 1.0/v_2_t
-    w_1_t = inv_v_2_t_2*prs_platform_joint_offset_x*s_2
+    inv_v_2_t_2 = 1.0/v_2_t_2
+    w_1_t = inv_v_2_t_2*v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
     # (prs-V4) reciprocal vector 2
     w_2_t = inv_v_2_t_2*s_2
     w_2_t_2 = c_2*inv_v_2_t_2
-    # (prs-A17) coefficient of the acceleration in: acceleration of the origin of joint 2
-    d_a_o2_t = c_2*w_1_r0_x
-    d_a_o2_t_2 = s_2*w_1_r0_x
-    d_a_o2_t_3 = c_2*w_1_r0_y
-    d_a_o2_t_4 = s_2*w_1_r0_y
-    _x = c_2*d_a_o2_t - d_a_o2_t_3*s_2
-    _y = c_2*d_a_o2_t_3 + d_a_o2_t*s_2
-    _x_2 = c_2*d_a_o2_t_2 - d_a_o2_t_4*s_2
-    _y_2 = c_2*d_a_o2_t_4 + d_a_o2_t_2*s_2
-    # (prs-N13) coefficient of the acceleration in: inertia force of link 2 less its weight
-    _x_3 = -c_2*(_x*prs_link2_mass + h_2_y*w_2_t) - s_2*(_x_2*prs_link2_mass - h_2_x*w_2_t)
-    _x_4 = -c_2*(_y*prs_link2_mass - h_2_y*w_2_t_2) - s_2*(_y_2*prs_link2_mass + h_2_x*w_2_t_2)
-    # (prs-N24) coefficient of the acceleration in: inertia force of the links from 1 outwards, the last link left out
-    d_T_1_xx = prs_link1_mass*w_1_r0_x - _x_3*c_2 - _x_4*s_2
-    d_T_1_xy = _x_3*s_2 + prs_link1_mass*w_1_r0_y - _x_4*c_2
-    # (prs-N18) coefficient of the acceleration in: inertia moment of the links that turn with link 2, about their reference points
-    d_mu_2_zy = J_2_zz*w_2_t_2 + _y_2*h_2_x - _y*h_2_y
     # (prs-N27) coefficient of the acceleration in: force along axis 1 of the distal links' inertia and weight
-    d_Gamma_1_r0_y = -c_2*d_T_1_xy - d_T_1_xx*s_2
+    d_Gamma_1_t = inv_v_2_t_2*(P_c2_r0_x + P_c1_t*v_2_t)
+    _r0_x_2 = -P_c1_t*c_2 - d_Gamma_1_t*s_2
+    _r0_y_2 = c_2*d_Gamma_1_t - P_c1_t*s_2
+    # (prs-N22) coefficient of the acceleration in: moment about axis 2 of the distal links' inertia and weight
+    d_Gamma_2_t = inv_v_2_t_2*(J_2_zz + P_c2_r0_x*v_2_t)
+    _r0_x_3 = -P_c2_r0_x*c_2 - d_Gamma_2_t*s_2
+    _r0_y_3 = c_2*d_Gamma_2_t - P_c2_r0_x*s_2
     # (prs-N30) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_xx = _r0_x*(d_T_1_xy*s_2 - c_2*d_T_1_xx) - w_2_t*(_x_2*h_2_x - J_2_zz*w_2_t - _x*h_2_y)
-    d_G_xy = _r0_x*d_Gamma_1_r0_y - d_mu_2_zy*w_2_t
-    d_G_yy = _r0_y*d_Gamma_1_r0_y + d_mu_2_zy*w_2_t_2
-    # (prs-N35) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*d_G_xx
-    Q_t_2 = 0.5*d_G_yy
-    Q_t_3 = Q_t*axis_x_prs_axes2_in_base_x + axis_y_prs_axes2_in_base_x*d_G_xy
-    Q_t_4 = Q_t*axis_x_prs_axes2_in_base_y + axis_y_prs_axes2_in_base_y*d_G_xy
-    Q_t_5 = Q_t*axis_x_prs_axes2_in_base_z + axis_y_prs_axes2_in_base_z*d_G_xy
-    Q_t_6 = Q_t_2*axis_y_prs_axes2_in_base_x
-    Q_t_7 = Q_t_2*axis_y_prs_axes2_in_base_y
-    Q_t_8 = Q_t_2*axis_y_prs_axes2_in_base_z
-    Q_t_9 = Q_t_3*axis_x_prs_axes2_in_base_x + Q_t_6*axis_y_prs_axes2_in_base_x
-    Q_t_10 = 2.0*Q_t_9
-    Q_t_11 = (
-    Q_t_3*axis_x_prs_axes2_in_base_y + Q_t_4*axis_x_prs_axes2_in_base_x +
-        Q_t_6*axis_y_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_x
+    d_G_xx = _r0_x*_r0_x_2 - _r0_x_3*w_2_t
+    d_G_xy = _r0_x*_r0_y_2 - _r0_y_3*w_2_t
+    d_G_yx = _r0_x_2*_r0_y + _r0_x_3*w_2_t_2
+    d_G_yy = _r0_y*_r0_y_2 + _r0_y_3*w_2_t_2
+    # (prs-N33) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_in_base_x = -axis_x_prs_axes2_in_base_x*d_G_xx - axis_y_prs_axes2_in_base_x*d_G_yx
+    d_c_in_base_y = -axis_x_prs_axes2_in_base_y*d_G_xx - axis_y_prs_axes2_in_base_y*d_G_yx
+    d_c_in_base_x_2 = -axis_x_prs_axes2_in_base_x*d_G_xy - axis_y_prs_axes2_in_base_x*d_G_yy
+    d_c_in_base_y_2 = -axis_x_prs_axes2_in_base_y*d_G_xy - axis_y_prs_axes2_in_base_y*d_G_yy
+    d_c_in_base_x_3 = (
+    axis_x_prs_axes2_in_base_x*d_c_in_base_x + axis_y_prs_axes2_in_base_x*d_c_in_base_x_2
     )
-    Q_t_12 = (
-    Q_t_3*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_x +
-        Q_t_6*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_x
+    d_c_in_base_y_3 = (
+    axis_x_prs_axes2_in_base_y*d_c_in_base_x + axis_y_prs_axes2_in_base_y*d_c_in_base_x_2
     )
-    Q_t_13 = Q_t_4*axis_x_prs_axes2_in_base_y + Q_t_7*axis_y_prs_axes2_in_base_y
-    Q_t_14 = 2.0*Q_t_13
-    Q_t_15 = (
-    Q_t_4*axis_x_prs_axes2_in_base_z + Q_t_5*axis_x_prs_axes2_in_base_y +
-        Q_t_7*axis_y_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_y
+    d_c_in_base_z = (
+    axis_x_prs_axes2_in_base_z*d_c_in_base_x + axis_y_prs_axes2_in_base_z*d_c_in_base_x_2
     )
-    Q_t_16 = Q_t_5*axis_x_prs_axes2_in_base_z + Q_t_8*axis_y_prs_axes2_in_base_z
-    Q_t_17 = 2.0*Q_t_16
+    d_c_in_base_y_4 = (
+    axis_x_prs_axes2_in_base_y*d_c_in_base_y + axis_y_prs_axes2_in_base_y*d_c_in_base_y_2
+    )
+    d_c_in_base_z_2 = (
+    axis_x_prs_axes2_in_base_z*d_c_in_base_y + axis_y_prs_axes2_in_base_z*d_c_in_base_y_2
+    )
+    d_c_in_base_z_3 = (
+    axis_x_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xx -
+        axis_y_prs_axes2_in_base_z*d_G_yx) +
+        axis_y_prs_axes2_in_base_z*(-axis_x_prs_axes2_in_base_z*d_G_xy -
+        axis_y_prs_axes2_in_base_z*d_G_yy)
+    )
     # (M2) coupling block of M
-    M_ta_t = Q_t_11*q_in_base_z
-    M_ta_t_2 = Q_t_12*q_in_base_y
+    M_ta_t = d_c_in_base_y_3*q_in_base_z
+    M_ta_t_2 = d_c_in_base_z*q_in_base_y
     M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_10*q_in_base_z - Q_t_12*q_in_base_x
-    M_ta_t_5 = Q_t_10*q_in_base_y - Q_t_11*q_in_base_x
-    M_ta_t_6 = Q_t_14*q_in_base_z - Q_t_15*q_in_base_y
-    M_ta_t_7 = Q_t_15*q_in_base_x
+    M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
+    M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
+    M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
+    M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
     M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_11*q_in_base_y - Q_t_14*q_in_base_x
-    M_ta_t_10 = Q_t_15*q_in_base_z - Q_t_17*q_in_base_y
-    M_ta_t_11 = Q_t_12*q_in_base_z - Q_t_17*q_in_base_x
+    M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
+    M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
+    M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
     M_ta_t_12 = M_ta_t_7 - M_ta_t_2
     # (M3) rotational block of M
     M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
@@ -1154,11 +1136,11 @@ def _M_prs(c, k, x, s, f):
     M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x
     M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z
     M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
-    ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t) > _TOLERANCE * size)
+    ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (
-    ok, (Q_t_10, Q_t_11, Q_t_12, Q_t_14, Q_t_15, Q_t_17, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6,), (),
+    ok, (d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
+        d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10,
+        M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,), (),
     )
 
 
@@ -1175,30 +1157,30 @@ def _M_after(c, s, t, f):
         total_prs_xy_3, total_prs_xz_3, total_prs_yy_3, total_prs_yz_3, total_prs_zz_3,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = platform_mass + total_prs_xx
-    M_tt_yy = platform_mass + total_prs_yy
-    M_tt_zz = platform_mass + total_prs_zz
+    M_tt_xx = platform_mass - total_prs_xx
+    M_tt_yy = platform_mass - total_prs_yy
+    M_tt_zz = platform_mass - total_prs_zz
     # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z + total_prs_xy_2
-    M_ta_xz = -h_star_in_base_y - total_prs_xz_2
-    M_ta_yx = -h_star_in_base_z - total_prs_yx
-    M_ta_yz = h_star_in_base_x - total_prs_yz_2
-    M_ta_zx = h_star_in_base_y - total_prs_zx
-    M_ta_zy = total_prs_zy - h_star_in_base_x
+    M_ta_xy = h_star_in_base_z - total_prs_xy_2
+    M_ta_xz = total_prs_xz_2 - h_star_in_base_y
+    M_ta_yx = total_prs_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_prs_yz_2
+    M_ta_zx = h_star_in_base_y + total_prs_zx
+    M_ta_zy = -h_star_in_base_x - total_prs_zy
     # (M3) rotational block of M
-    M_aa_xx = J_star_t_10 + total_prs_xx_3
-    M_aa_xy = J_star_t_11 - total_prs_xy_3
-    M_aa_xz = J_star_t_12 + total_prs_xz_3
-    M_aa_yy = J_star_t_14 + total_prs_yy_3
-    M_aa_yz = J_star_t_15 - total_prs_yz_3
-    M_aa_zz = J_star_t_17 + total_prs_zz_3
+    M_aa_xx = J_star_t_10 - total_prs_xx_3
+    M_aa_xy = J_star_t_11 + total_prs_xy_3
+    M_aa_xz = J_star_t_12 - total_prs_xz_3
+    M_aa_yy = J_star_t_14 - total_prs_yy_3
+    M_aa_yz = J_star_t_15 + total_prs_yz_3
+    M_aa_zz = J_star_t_17 - total_prs_zz_3
     ok = True
     return (
-    ok, (M_tt_xx, total_prs_xy, total_prs_xy, total_prs_xz, total_prs_xz, M_tt_yy, total_prs_yz,
-        total_prs_yz, M_tt_zz, -total_prs_xx_2, -total_prs_xx_2, M_ta_xy, M_ta_xy, M_ta_xz,
-        M_ta_xz, M_ta_yx, M_ta_yx, total_prs_yy_2, total_prs_yy_2, M_ta_yz, M_ta_yz, M_ta_zx,
-        M_ta_zx, M_ta_zy, M_ta_zy, total_prs_zz_2, total_prs_zz_2, M_aa_xx, M_aa_xy, M_aa_xy,
-        M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
+    ok, (M_tt_xx, -total_prs_xy, -total_prs_xy, -total_prs_xz, -total_prs_xz, M_tt_yy,
+        -total_prs_yz, -total_prs_yz, M_tt_zz, total_prs_xx_2, total_prs_xx_2, M_ta_xy, M_ta_xy,
+        M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_prs_yy_2, -total_prs_yy_2, M_ta_yz, M_ta_yz,
+        M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_prs_zz_2, -total_prs_zz_2, M_aa_xx, M_aa_xy,
+        M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
     )
 
 
@@ -1376,17 +1358,17 @@ def _Z_prs(c, k, x, s, f):
     # (prs-A8) remainder without the acceleration in: acceleration of joint 1
     qdd_2_o = inv_v_2_t_2*(rel_o_x*s_2 - c_2*u_1_tip_y)
     qdd_1_o_t = c_2*rel_o_x + qdd_2_o*v_2_t + s_2*u_1_tip_y
-    # (prs-N3) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
+    # (prs-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     acc_1_o_x = -g_r0_x - qdd_1_o_t
-    # (prs-N8) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
+    # (prs-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     acc_2_o_x = c_2*g_r0_x + c_2*qdd_1_o_t - g_r0_y*s_2
     acc_2_o_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_o_t*s_2
-    # (prs-N14) remainder without the acceleration in: inertia force of link 2 less its weight
+    # (prs-N10) remainder without the acceleration in: inertia force of link 2 less its weight
     f_2_o_x = acc_2_o_x*prs_link2_mass + h_2_y*qdd_2_o - W_2_t*h_2_x
     f_2_o_y = acc_2_o_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2_o
     # (prs-N25) remainder without the acceleration in: inertia force of the links from 1 outwards, the last link left out
     T_1_o_x = acc_1_o_x*prs_link1_mass - c_2*f_2_o_x - f_2_o_y*s_2
-    # (prs-N19) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
+    # (prs-N20) remainder without the acceleration in: inertia moment of the links that turn with link 2, about their reference points
     mu_2_o_z = acc_2_o_y*h_2_x - J_2_zz*qdd_2_o - acc_2_o_x*h_2_y
     # (prs-N31) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = inv_v_2_t_2*(mu_2_o_z + T_1_o_x*v_2_t)
@@ -1419,7 +1401,7 @@ def _Z_after(c, s, t, f):
     return (ok, (Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y, Z_a_z,),)
 
 
-# H: 153 mul, 102 add, 6 div, 6 sqrt, 0 trig
+# H: 177 mul, 114 add, 6 div, 6 sqrt, 0 trig
 def _H_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -1505,11 +1487,18 @@ def _H_prs(c, k, x, s, f):
     w_1_t = prs_platform_joint_offset_x*s_2/v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
-    w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
-    w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
-    w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
+    w_1_in_base_x = (
+    _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) + _r0_y*(-c_2*prs_base_frame_xy -
+        prs_base_frame_xx*s_2)
+    )
+    w_1_in_base_y = (
+    _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) + _r0_y*(-c_2*prs_base_frame_yy -
+        prs_base_frame_yx*s_2)
+    )
+    w_1_in_base_z = (
+    _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) + _r0_y*(-c_2*prs_base_frame_zy -
+        prs_base_frame_zx*s_2)
+    )
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
     H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
@@ -1836,8 +1825,6 @@ def _required_prs(c, k, x, s, f):
     w_1_t = inv_v_2_t_2*v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
     # (prs-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -1852,14 +1839,6 @@ def _required_prs(c, k, x, s, f):
     )
     # (prs-V8) centripetal tensor of link 2
     W_2_t = qd_2*qd_2
-    # (prs-V3) reciprocal vector 1
-    w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
-    w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
-    w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
-    # (M8) moment of the column's unit force about the platform origin
-    H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
-    H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
-    H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
     Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
@@ -1886,15 +1865,15 @@ def _required_prs(c, k, x, s, f):
     qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t
     # (prs-N1) acceleration of the reference point of link 1, less gravity
     acc_1_x = -g_r0_x - qdd_1_t
-    # (prs-N7) acceleration of the reference point of link 2, less gravity
+    # (prs-N5) acceleration of the reference point of link 2, less gravity
     acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2
     acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2
-    # (prs-N12) inertia force of link 2 less its weight
+    # (prs-N9) inertia force of link 2 less its weight
     f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x
     f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2
-    # (prs-N23) inertia force of the links from 1 outwards, the last link left out
+    # (prs-N24) inertia force of the links from 1 outwards, the last link left out
     T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2
-    # (prs-N17) inertia moment of the links that turn with link 2, about their reference points
+    # (prs-N19) inertia moment of the links that turn with link 2, about their reference points
     mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
     # (prs-N29) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_v_2_t_2*(mu_2_z + T_1_x*v_2_t)
@@ -1910,6 +1889,16 @@ def _required_prs(c, k, x, s, f):
     R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z
     R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x
     R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
+    # (prs-V3) reciprocal vector 1
+    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
+    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
+    w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
+    w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
+    w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
+    # (M8) moment of the column's unit force about the platform origin
+    H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
+    H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
+    H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
     ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (
     ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (w_1_in_base_x,
@@ -2477,8 +2466,6 @@ def _legs_prs(c, k, x, s, f):
     w_1_t = inv_v_2_t_2*v_2_t
     _r0_x = -c_2 - s_2*w_1_t
     _r0_y = c_2*w_1_t - s_2
-    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
-    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
     # (prs-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2493,10 +2480,6 @@ def _legs_prs(c, k, x, s, f):
     )
     # (prs-V8) centripetal tensor of link 2
     W_2_t = qd_2*qd_2
-    # (prs-V3) reciprocal vector 1
-    w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
-    w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
-    w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
     # (prs-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -2519,15 +2502,15 @@ def _legs_prs(c, k, x, s, f):
     qdd_1_t = S_ddot_r1_y*s_2 + c_2*rel_x + qdd_2*v_2_t
     # (prs-N1) acceleration of the reference point of link 1, less gravity
     acc_1_x = -g_r0_x - qdd_1_t
-    # (prs-N7) acceleration of the reference point of link 2, less gravity
+    # (prs-N5) acceleration of the reference point of link 2, less gravity
     acc_2_x = c_2*g_r0_x + c_2*qdd_1_t - g_r0_y*s_2
     acc_2_y = c_2*g_r0_y + g_r0_x*s_2 + qdd_1_t*s_2
-    # (prs-N12) inertia force of link 2 less its weight
+    # (prs-N9) inertia force of link 2 less its weight
     f_2_x = acc_2_x*prs_link2_mass + h_2_y*qdd_2 - W_2_t*h_2_x
     f_2_y = acc_2_y*prs_link2_mass - W_2_t*h_2_y - h_2_x*qdd_2
-    # (prs-N23) inertia force of the links from 1 outwards, the last link left out
+    # (prs-N24) inertia force of the links from 1 outwards, the last link left out
     T_1_x = acc_1_x*prs_link1_mass - c_2*f_2_x - f_2_y*s_2
-    # (prs-N17) inertia moment of the links that turn with link 2, about their reference points
+    # (prs-N19) inertia moment of the links that turn with link 2, about their reference points
     mu_2_z = acc_2_y*h_2_x - J_2_zz*qdd_2 - acc_2_x*h_2_y
     # (prs-N29) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = inv_v_2_t_2*(mu_2_z + T_1_x*v_2_t)
@@ -2539,6 +2522,12 @@ def _legs_prs(c, k, x, s, f):
     c_in_base_x = c_r0_x*prs_base_frame_xx + c_r0_y*prs_base_frame_xy
     c_in_base_y = c_r0_x*prs_base_frame_yx + c_r0_y*prs_base_frame_yy
     c_in_base_z = c_r0_x*prs_base_frame_zx + c_r0_y*prs_base_frame_zy
+    # (prs-V3) reciprocal vector 1
+    w_1_r0_x = -_r0_x*c_2 - _r0_y*s_2
+    w_1_r0_y = _r0_x*s_2 - _r0_y*c_2
+    w_1_in_base_x = prs_base_frame_xx*w_1_r0_x + prs_base_frame_xy*w_1_r0_y
+    w_1_in_base_y = prs_base_frame_yx*w_1_r0_x + prs_base_frame_yy*w_1_r0_y
+    w_1_in_base_z = prs_base_frame_zx*w_1_r0_x + prs_base_frame_zy*w_1_r0_y
     ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t_2) > _TOLERANCE * size)
     return (
     ok, (), (c_in_base_x, c_in_base_y, c_in_base_z, w_1_in_base_x, w_1_in_base_y, w_1_in_base_z,
@@ -2673,7 +2662,7 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 3)), ('Hk', (6, 3)), ('constraint_
             _dynamics_prs,
             "prs",
 (),
-('J_2_zz', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_2_x', 'h_2_y', 'prs_base_frame_xx',
+('J_2_zz', 'P_c1_t', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_2_x', 'h_2_y', 'prs_base_frame_xx',
             'prs_base_frame_xy', 'prs_base_frame_xz', 'prs_base_frame_yx', 'prs_base_frame_yy',
             'prs_base_frame_yz', 'prs_base_frame_zx', 'prs_base_frame_zy', 'prs_base_frame_zz',
             'prs_base_point_x', 'prs_base_point_y', 'prs_base_point_z', 'prs_link1_mass',
@@ -2727,12 +2716,12 @@ arrays=(('M', (6, 6)),),
             _M_prs,
             "prs",
 (),
-('J_2_zz', 'branch_1', 'h_2_x', 'h_2_y', 'prs_base_frame_xx', 'prs_base_frame_xy',
+('J_2_zz', 'P_c1_t', 'branch_1', 'h_2_x', 'h_2_y', 'prs_base_frame_xx', 'prs_base_frame_xy',
             'prs_base_frame_xz', 'prs_base_frame_yx', 'prs_base_frame_yy', 'prs_base_frame_yz',
             'prs_base_frame_zx', 'prs_base_frame_zy', 'prs_base_frame_zz', 'prs_base_point_x',
-            'prs_base_point_y', 'prs_base_point_z', 'prs_link1_mass', 'prs_link2_mass',
-            'prs_platform_joint_offset_x', 'prs_platform_point_x', 'prs_platform_point_y',
-            'prs_platform_point_z', 'root_2_t', 'size', 'uu_2_t'),
+            'prs_base_point_y', 'prs_base_point_z', 'prs_platform_joint_offset_x',
+            'prs_platform_point_x', 'prs_platform_point_y', 'prs_platform_point_z', 'root_2_t',
+            'size', 'uu_2_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

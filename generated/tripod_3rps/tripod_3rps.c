@@ -400,20 +400,6 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         /* (rps-N12) inertia of the links that turn with link 1, each about its reference point */
         const real J_group_1_zz = rps_link1_inertia_zz + rps_link2_inertia_zz -
             rps_link1_mass*(J_1_t - J_1_t_2) - rps_link2_mass*(J_2_t - J_2_t_2);
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*rps_link2_mass;
-        const real Q_t_2 = Q_t*rps_base_frame_xz;
-        const real Q_t_3 = Q_t*rps_base_frame_yz;
-        const real Q_t_4 = Q_t*rps_base_frame_zz;
-        const real Q_t_5 = Q_t_2*rps_base_frame_xz;
-        const real Q_t_6 = Q_t_3*rps_base_frame_xz;
-        const real Q_t_7 = Q_t_2*rps_base_frame_yz;
-        const real Q_t_8 = Q_t_4*rps_base_frame_xz;
-        const real Q_t_9 = Q_t_2*rps_base_frame_zz;
-        const real Q_t_10 = Q_t_3*rps_base_frame_yz;
-        const real Q_t_11 = Q_t_4*rps_base_frame_yz;
-        const real Q_t_12 = Q_t_3*rps_base_frame_zz;
-        const real Q_t_13 = Q_t_4*rps_base_frame_zz;
         /* (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r0_x = gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx +
@@ -435,15 +421,6 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
             rps_link1_centre_of_mass_z*rps_link1_mass +
             rps_link2_centre_of_mass_z*rps_link2_mass);
         model->J_group_1_zz[leg] = J_group_1_zz;
-        model->Q_t_10[leg] = Q_t_10;
-        model->Q_t_11[leg] = Q_t_11;
-        model->Q_t_12[leg] = Q_t_12;
-        model->Q_t_13[leg] = Q_t_13;
-        model->Q_t_5[leg] = Q_t_5;
-        model->Q_t_6[leg] = Q_t_6;
-        model->Q_t_7[leg] = Q_t_7;
-        model->Q_t_8[leg] = Q_t_8;
-        model->Q_t_9[leg] = Q_t_9;
         model->b_r0_x[leg] = b_r0_x;
         model->b_r0_y[leg] = b_r0_y;
         model->branch_1[leg] = branch_1;
@@ -479,7 +456,7 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 570 mul, 489 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 585 mul, 468 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -672,15 +649,6 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real omega_y = s->omega_y[j];
         const real omega_z = s->omega_z[j];
         const real J_group_1_zz = m->J_group_1_zz[i];
-        const real Q_t_10 = m->Q_t_10[i];
-        const real Q_t_11 = m->Q_t_11[i];
-        const real Q_t_12 = m->Q_t_12[i];
-        const real Q_t_13 = m->Q_t_13[i];
-        const real Q_t_5 = m->Q_t_5[i];
-        const real Q_t_6 = m->Q_t_6[i];
-        const real Q_t_7 = m->Q_t_7[i];
-        const real Q_t_8 = m->Q_t_8[i];
-        const real Q_t_9 = m->Q_t_9[i];
         const real branch_1 = m->branch_1[i];
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
@@ -724,55 +692,62 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        /* (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_t = h_2_y*inv_root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
         const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
         const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
         const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
-        const real Q_t = inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass +
-            h_2_x*inv_root_1)) - rps_link2_mass;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x -
-            axis_x_rps_axes1_in_base_x*d_phi_2_t;
-        const real Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y -
-            axis_x_rps_axes1_in_base_y*d_phi_2_t;
-        const real Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z -
-            axis_x_rps_axes1_in_base_z*d_phi_2_t;
-        const real Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5;
-        const real Q_t_16 = 2*Q_t_15 + rps_link2_mass;
-        const real Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x -
-            Q_t_6 - Q_t_7;
-        const real Q_t_18 = Q_t_14*axis_y_rps_axes1_in_base_x + Q_t_3*axis_y_rps_axes1_in_base_z -
-            Q_t_8 - Q_t_9;
-        const real Q_t_19 = Q_t_4*axis_y_rps_axes1_in_base_y - Q_t_10;
-        const real Q_t_20 = 2*Q_t_19 + rps_link2_mass;
-        const real Q_t_21 = Q_t_14*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_z -
-            Q_t_11 - Q_t_12;
-        const real Q_t_22 = Q_t_14*axis_y_rps_axes1_in_base_z - Q_t_13;
-        const real Q_t_23 = 2*Q_t_22 + rps_link2_mass;
+        /* (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_t = h_2_y*inv_root_1;
+        /* (rps-N28) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_t = inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass +
+            h_2_x*inv_root_1));
+        /* (rps-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_in_base_x = axis_y_rps_axes1_in_base_x*d_phi_2_t -
+            axis_x_rps_axes1_in_base_x*rps_link2_mass;
+        const real d_c_in_base_y = axis_y_rps_axes1_in_base_y*d_phi_2_t -
+            axis_x_rps_axes1_in_base_y*rps_link2_mass;
+        const real d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*d_phi_2_t -
+            axis_y_rps_axes1_in_base_x*d_G_t;
+        const real d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*d_phi_2_t -
+            axis_y_rps_axes1_in_base_y*d_G_t;
+        const real d_c_in_base_x_3 = axis_x_rps_axes1_in_base_x*d_c_in_base_x +
+            axis_y_rps_axes1_in_base_x*d_c_in_base_x_2;
+        const real d_c_in_base_y_3 = axis_x_rps_axes1_in_base_y*d_c_in_base_x +
+            axis_y_rps_axes1_in_base_y*d_c_in_base_x_2;
+        const real d_c_in_base_z = axis_x_rps_axes1_in_base_z*d_c_in_base_x +
+            axis_y_rps_axes1_in_base_z*d_c_in_base_x_2;
+        const real d_c_in_base_y_4 = axis_x_rps_axes1_in_base_y*d_c_in_base_y +
+            axis_y_rps_axes1_in_base_y*d_c_in_base_y_2;
+        const real d_c_in_base_z_2 = axis_x_rps_axes1_in_base_z*d_c_in_base_y +
+            axis_y_rps_axes1_in_base_z*d_c_in_base_y_2;
+        const real d_c_in_base_z_3 =
+            axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*d_phi_2_t -
+            axis_x_rps_axes1_in_base_z*rps_link2_mass) +
+            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*d_phi_2_t -
+            axis_y_rps_axes1_in_base_z*d_G_t);
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_17*q_in_base_z;
-        const real M_ta_t_2 = Q_t_18*q_in_base_y;
+        const real M_ta_t = d_c_in_base_y_3*q_in_base_z;
+        const real M_ta_t_2 = d_c_in_base_z*q_in_base_y;
         const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_16*q_in_base_z - Q_t_18*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_y - Q_t_17*q_in_base_x;
-        const real M_ta_t_6 = Q_t_20*q_in_base_z - Q_t_21*q_in_base_y;
-        const real M_ta_t_7 = Q_t_21*q_in_base_x;
+        const real M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x;
+        const real M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x;
+        const real M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y;
+        const real M_ta_t_7 = d_c_in_base_z_2*q_in_base_x;
         const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_17*q_in_base_y - Q_t_20*q_in_base_x;
-        const real M_ta_t_10 = Q_t_21*q_in_base_z - Q_t_23*q_in_base_y;
-        const real M_ta_t_11 = Q_t_18*q_in_base_z - Q_t_23*q_in_base_x;
+        const real M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x;
+        const real M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y;
+        const real M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x;
         const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
@@ -847,12 +822,12 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz;
         const real Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz;
         const real Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz;
-        o->sum[0][k] = Q_t_16;  /* total_rps_xx */
-        o->sum[1][k] = Q_t_17;  /* total_rps_xy */
-        o->sum[2][k] = Q_t_18;  /* total_rps_xz */
-        o->sum[3][k] = Q_t_20;  /* total_rps_yy */
-        o->sum[4][k] = Q_t_21;  /* total_rps_yz */
-        o->sum[5][k] = Q_t_23;  /* total_rps_zz */
+        o->sum[0][k] = d_c_in_base_x_3;  /* total_rps_xx */
+        o->sum[1][k] = d_c_in_base_y_3;  /* total_rps_xy */
+        o->sum[2][k] = d_c_in_base_z;  /* total_rps_xz */
+        o->sum[3][k] = d_c_in_base_y_4;  /* total_rps_yy */
+        o->sum[4][k] = d_c_in_base_z_2;  /* total_rps_yz */
+        o->sum[5][k] = d_c_in_base_z_3;  /* total_rps_zz */
         o->sum[6][k] = M_ta_t_3;  /* total_rps_xx_2 */
         o->sum[7][k] = M_ta_t_4;  /* total_rps_xy_2 */
         o->sum[8][k] = M_ta_t_5;  /* total_rps_xz_2 */
@@ -961,23 +936,23 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real total_rps_z_2 = s->sum[26][k];
         const real platform_mass = m->platform_mass;
         /* (M1) translational block of M */
-        const real M_tt_xx = platform_mass + total_rps_xx;
-        const real M_tt_yy = platform_mass + total_rps_yy;
-        const real M_tt_zz = platform_mass + total_rps_zz;
+        const real M_tt_xx = platform_mass - total_rps_xx;
+        const real M_tt_yy = platform_mass - total_rps_yy;
+        const real M_tt_zz = platform_mass - total_rps_zz;
         /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z + total_rps_xy_2;
-        const real M_ta_xz = -h_star_in_base_y - total_rps_xz_2;
-        const real M_ta_yx = -h_star_in_base_z - total_rps_yx;
-        const real M_ta_yz = h_star_in_base_x - total_rps_yz_2;
-        const real M_ta_zx = h_star_in_base_y - total_rps_zx;
-        const real M_ta_zy = total_rps_zy - h_star_in_base_x;
+        const real M_ta_xy = h_star_in_base_z - total_rps_xy_2;
+        const real M_ta_xz = total_rps_xz_2 - h_star_in_base_y;
+        const real M_ta_yx = total_rps_yx - h_star_in_base_z;
+        const real M_ta_yz = h_star_in_base_x + total_rps_yz_2;
+        const real M_ta_zx = h_star_in_base_y + total_rps_zx;
+        const real M_ta_zy = -h_star_in_base_x - total_rps_zy;
         /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_10 + total_rps_xx_3;
-        const real M_aa_xy = J_star_t_11 - total_rps_xy_3;
-        const real M_aa_xz = J_star_t_12 + total_rps_xz_3;
-        const real M_aa_yy = J_star_t_14 + total_rps_yy_3;
-        const real M_aa_yz = J_star_t_15 - total_rps_yz_3;
-        const real M_aa_zz = J_star_t_17 + total_rps_zz_3;
+        const real M_aa_xx = J_star_t_10 - total_rps_xx_3;
+        const real M_aa_xy = J_star_t_11 + total_rps_xy_3;
+        const real M_aa_xz = J_star_t_12 - total_rps_xz_3;
+        const real M_aa_yy = J_star_t_14 - total_rps_yy_3;
+        const real M_aa_yz = J_star_t_15 + total_rps_yz_3;
+        const real M_aa_zz = J_star_t_17 - total_rps_zz_3;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_rps_x;
         const real Z_t_y = Z_p_y + total_rps_y;
@@ -987,32 +962,32 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real Z_a_y = Z_q_in_base_y + total_rps_y_2;
         const real Z_a_z = Z_q_in_base_z + total_rps_z_2;
         M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rps_xy;
-        M[6*w + k] = total_rps_xy;
-        M[2*w + k] = total_rps_xz;
-        M[12*w + k] = total_rps_xz;
+        M[1*w + k] = -total_rps_xy;
+        M[6*w + k] = -total_rps_xy;
+        M[2*w + k] = -total_rps_xz;
+        M[12*w + k] = -total_rps_xz;
         M[7*w + k] = M_tt_yy;
-        M[8*w + k] = total_rps_yz;
-        M[13*w + k] = total_rps_yz;
+        M[8*w + k] = -total_rps_yz;
+        M[13*w + k] = -total_rps_yz;
         M[14*w + k] = M_tt_zz;
-        M[3*w + k] = -total_rps_xx_2;
-        M[18*w + k] = -total_rps_xx_2;
+        M[3*w + k] = total_rps_xx_2;
+        M[18*w + k] = total_rps_xx_2;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        M[10*w + k] = total_rps_yy_2;
-        M[25*w + k] = total_rps_yy_2;
+        M[10*w + k] = -total_rps_yy_2;
+        M[25*w + k] = -total_rps_yy_2;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        M[17*w + k] = total_rps_zz_2;
-        M[32*w + k] = total_rps_zz_2;
+        M[17*w + k] = -total_rps_zz_2;
+        M[32*w + k] = -total_rps_zz_2;
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1077,7 +1052,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 18, w, code, H);
 }
 
-/* ---- M: 294 mul, 288 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 309 mul, 267 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1202,15 +1177,6 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
         const real J_group_1_zz = m->J_group_1_zz[i];
-        const real Q_t_10 = m->Q_t_10[i];
-        const real Q_t_11 = m->Q_t_11[i];
-        const real Q_t_12 = m->Q_t_12[i];
-        const real Q_t_13 = m->Q_t_13[i];
-        const real Q_t_5 = m->Q_t_5[i];
-        const real Q_t_6 = m->Q_t_6[i];
-        const real Q_t_7 = m->Q_t_7[i];
-        const real Q_t_8 = m->Q_t_8[i];
-        const real Q_t_9 = m->Q_t_9[i];
         const real branch_1 = m->branch_1[i];
         const real h_2_x = m->h_2_x[i];
         const real h_2_y = m->h_2_y[i];
@@ -1247,52 +1213,62 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        /* (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its
-           reference point */
-        const real d_phi_2_t = h_2_y*inv_root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
-        const real Q_t = inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass +
-            h_2_x*inv_root_1)) - rps_link2_mass;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - d_phi_2_t*(c_1*rps_base_frame_xx +
-            rps_base_frame_xy*s_1);
-        const real Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - d_phi_2_t*(c_1*rps_base_frame_yx +
-            rps_base_frame_yy*s_1);
-        const real Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - d_phi_2_t*(c_1*rps_base_frame_zx +
-            rps_base_frame_zy*s_1);
-        const real Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5;
-        const real Q_t_16 = 2*Q_t_15 + rps_link2_mass;
-        const real Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x -
-            Q_t_6 - Q_t_7;
-        const real Q_t_18 = Q_t_14*axis_y_rps_axes1_in_base_x + Q_t_3*axis_y_rps_axes1_in_base_z -
-            Q_t_8 - Q_t_9;
-        const real Q_t_19 = Q_t_4*axis_y_rps_axes1_in_base_y - Q_t_10;
-        const real Q_t_20 = 2*Q_t_19 + rps_link2_mass;
-        const real Q_t_21 = Q_t_14*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_z -
-            Q_t_11 - Q_t_12;
-        const real Q_t_22 = Q_t_14*axis_y_rps_axes1_in_base_z - Q_t_13;
-        const real Q_t_23 = 2*Q_t_22 + rps_link2_mass;
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
+        /* (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its
+           reference point */
+        const real d_phi_2_t = h_2_y*inv_root_1;
+        /* (rps-N28) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_t = inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass +
+            h_2_x*inv_root_1));
+        /* (rps-N31) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_in_base_x = axis_y_rps_axes1_in_base_x*d_phi_2_t -
+            axis_x_rps_axes1_in_base_x*rps_link2_mass;
+        const real d_c_in_base_y = axis_y_rps_axes1_in_base_y*d_phi_2_t -
+            axis_x_rps_axes1_in_base_y*rps_link2_mass;
+        const real d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*d_phi_2_t -
+            axis_y_rps_axes1_in_base_x*d_G_t;
+        const real d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*d_phi_2_t -
+            axis_y_rps_axes1_in_base_y*d_G_t;
+        const real d_c_in_base_x_3 = axis_x_rps_axes1_in_base_x*d_c_in_base_x +
+            axis_y_rps_axes1_in_base_x*d_c_in_base_x_2;
+        const real d_c_in_base_y_3 = axis_x_rps_axes1_in_base_y*d_c_in_base_x +
+            axis_y_rps_axes1_in_base_y*d_c_in_base_x_2;
+        const real d_c_in_base_z = axis_x_rps_axes1_in_base_z*d_c_in_base_x +
+            axis_y_rps_axes1_in_base_z*d_c_in_base_x_2;
+        const real d_c_in_base_y_4 = axis_x_rps_axes1_in_base_y*d_c_in_base_y +
+            axis_y_rps_axes1_in_base_y*d_c_in_base_y_2;
+        const real d_c_in_base_z_2 = axis_x_rps_axes1_in_base_z*d_c_in_base_y +
+            axis_y_rps_axes1_in_base_z*d_c_in_base_y_2;
+        const real d_c_in_base_z_3 =
+            axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*d_phi_2_t -
+            axis_x_rps_axes1_in_base_z*rps_link2_mass) +
+            axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*d_phi_2_t -
+            axis_y_rps_axes1_in_base_z*d_G_t);
         /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_17*q_in_base_z;
-        const real M_ta_t_2 = Q_t_18*q_in_base_y;
+        const real M_ta_t = d_c_in_base_y_3*q_in_base_z;
+        const real M_ta_t_2 = d_c_in_base_z*q_in_base_y;
         const real M_ta_t_3 = M_ta_t - M_ta_t_2;
-        const real M_ta_t_4 = Q_t_16*q_in_base_z - Q_t_18*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_y - Q_t_17*q_in_base_x;
-        const real M_ta_t_6 = Q_t_20*q_in_base_z - Q_t_21*q_in_base_y;
-        const real M_ta_t_7 = Q_t_21*q_in_base_x;
+        const real M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x;
+        const real M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x;
+        const real M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y;
+        const real M_ta_t_7 = d_c_in_base_z_2*q_in_base_x;
         const real M_ta_t_8 = M_ta_t - M_ta_t_7;
-        const real M_ta_t_9 = Q_t_17*q_in_base_y - Q_t_20*q_in_base_x;
-        const real M_ta_t_10 = Q_t_21*q_in_base_z - Q_t_23*q_in_base_y;
-        const real M_ta_t_11 = Q_t_18*q_in_base_z - Q_t_23*q_in_base_x;
+        const real M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x;
+        const real M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y;
+        const real M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x;
         const real M_ta_t_12 = M_ta_t_7 - M_ta_t_2;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y;
@@ -1301,12 +1277,12 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
         const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
         const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = Q_t_16;  /* total_rps_xx */
-        o->sum[1][k] = Q_t_17;  /* total_rps_xy */
-        o->sum[2][k] = Q_t_18;  /* total_rps_xz */
-        o->sum[3][k] = Q_t_20;  /* total_rps_yy */
-        o->sum[4][k] = Q_t_21;  /* total_rps_yz */
-        o->sum[5][k] = Q_t_23;  /* total_rps_zz */
+        o->sum[0][k] = d_c_in_base_x_3;  /* total_rps_xx */
+        o->sum[1][k] = d_c_in_base_y_3;  /* total_rps_xy */
+        o->sum[2][k] = d_c_in_base_z;  /* total_rps_xz */
+        o->sum[3][k] = d_c_in_base_y_4;  /* total_rps_yy */
+        o->sum[4][k] = d_c_in_base_z_2;  /* total_rps_yz */
+        o->sum[5][k] = d_c_in_base_z_3;  /* total_rps_zz */
         o->sum[6][k] = M_ta_t_3;  /* total_rps_xx_2 */
         o->sum[7][k] = M_ta_t_4;  /* total_rps_xy_2 */
         o->sum[8][k] = M_ta_t_5;  /* total_rps_xz_2 */
@@ -1369,50 +1345,50 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_rps_zz_3 = s->sum[20][k];
         const real platform_mass = m->platform_mass;
         /* (M1) translational block of M */
-        const real M_tt_xx = platform_mass + total_rps_xx;
-        const real M_tt_yy = platform_mass + total_rps_yy;
-        const real M_tt_zz = platform_mass + total_rps_zz;
+        const real M_tt_xx = platform_mass - total_rps_xx;
+        const real M_tt_yy = platform_mass - total_rps_yy;
+        const real M_tt_zz = platform_mass - total_rps_zz;
         /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z + total_rps_xy_2;
-        const real M_ta_xz = -h_star_in_base_y - total_rps_xz_2;
-        const real M_ta_yx = -h_star_in_base_z - total_rps_yx;
-        const real M_ta_yz = h_star_in_base_x - total_rps_yz_2;
-        const real M_ta_zx = h_star_in_base_y - total_rps_zx;
-        const real M_ta_zy = total_rps_zy - h_star_in_base_x;
+        const real M_ta_xy = h_star_in_base_z - total_rps_xy_2;
+        const real M_ta_xz = total_rps_xz_2 - h_star_in_base_y;
+        const real M_ta_yx = total_rps_yx - h_star_in_base_z;
+        const real M_ta_yz = h_star_in_base_x + total_rps_yz_2;
+        const real M_ta_zx = h_star_in_base_y + total_rps_zx;
+        const real M_ta_zy = -h_star_in_base_x - total_rps_zy;
         /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_10 + total_rps_xx_3;
-        const real M_aa_xy = J_star_t_11 - total_rps_xy_3;
-        const real M_aa_xz = J_star_t_12 + total_rps_xz_3;
-        const real M_aa_yy = J_star_t_14 + total_rps_yy_3;
-        const real M_aa_yz = J_star_t_15 - total_rps_yz_3;
-        const real M_aa_zz = J_star_t_17 + total_rps_zz_3;
+        const real M_aa_xx = J_star_t_10 - total_rps_xx_3;
+        const real M_aa_xy = J_star_t_11 + total_rps_xy_3;
+        const real M_aa_xz = J_star_t_12 - total_rps_xz_3;
+        const real M_aa_yy = J_star_t_14 - total_rps_yy_3;
+        const real M_aa_yz = J_star_t_15 + total_rps_yz_3;
+        const real M_aa_zz = J_star_t_17 - total_rps_zz_3;
         M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rps_xy;
-        M[6*w + k] = total_rps_xy;
-        M[2*w + k] = total_rps_xz;
-        M[12*w + k] = total_rps_xz;
+        M[1*w + k] = -total_rps_xy;
+        M[6*w + k] = -total_rps_xy;
+        M[2*w + k] = -total_rps_xz;
+        M[12*w + k] = -total_rps_xz;
         M[7*w + k] = M_tt_yy;
-        M[8*w + k] = total_rps_yz;
-        M[13*w + k] = total_rps_yz;
+        M[8*w + k] = -total_rps_yz;
+        M[13*w + k] = -total_rps_yz;
         M[14*w + k] = M_tt_zz;
-        M[3*w + k] = -total_rps_xx_2;
-        M[18*w + k] = -total_rps_xx_2;
+        M[3*w + k] = total_rps_xx_2;
+        M[18*w + k] = total_rps_xx_2;
         M[4*w + k] = M_ta_xy;
         M[24*w + k] = M_ta_xy;
         M[5*w + k] = M_ta_xz;
         M[30*w + k] = M_ta_xz;
         M[9*w + k] = M_ta_yx;
         M[19*w + k] = M_ta_yx;
-        M[10*w + k] = total_rps_yy_2;
-        M[25*w + k] = total_rps_yy_2;
+        M[10*w + k] = -total_rps_yy_2;
+        M[25*w + k] = -total_rps_yy_2;
         M[11*w + k] = M_ta_yz;
         M[31*w + k] = M_ta_yz;
         M[15*w + k] = M_ta_zx;
         M[20*w + k] = M_ta_zx;
         M[16*w + k] = M_ta_zy;
         M[26*w + k] = M_ta_zy;
-        M[17*w + k] = total_rps_zz_2;
-        M[32*w + k] = total_rps_zz_2;
+        M[17*w + k] = -total_rps_zz_2;
+        M[32*w + k] = -total_rps_zz_2;
         M[21*w + k] = M_aa_xx;
         M[22*w + k] = M_aa_xy;
         M[27*w + k] = M_aa_xy;
@@ -1665,13 +1641,12 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
@@ -1934,13 +1909,12 @@ INLINE void H_legs_rps(const prepared *m, size_t leg, size_t legs, const H_value
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
         const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
         const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
@@ -2534,13 +2508,12 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
@@ -2812,7 +2785,6 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t leg, size_t le
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
@@ -2829,14 +2801,13 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t leg, size_t le
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
+        /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
         /* (rps-K9) displacement of joint 1 */
         const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
         o->entry[0][k] = q_1;
         o->entry[1][k] = root_1;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
     }
 }
 
@@ -3021,9 +2992,8 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t leg, size_t legs, con
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
@@ -3256,13 +3226,12 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
@@ -3668,13 +3637,12 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
-        /* (rps-N33) inertia of the leg at the connection point, without the mass gathered there */
+        /* (rps-V4) reciprocal vector 1 */
         const real axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1;
         const real axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1;
         const real axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1;
@@ -3903,7 +3871,6 @@ INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
@@ -3920,9 +3887,8 @@ INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (rps-K6) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
-        /* (rps-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
         /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
         const real c_1 = inv_root_1*px_1;
         /* (rps-K8) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*py_1;
@@ -3933,8 +3899,7 @@ INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const
             b_r1_x*rps_link1_mass + rps_link2_mass*(b_r1_x + root_1)) + (c_1*g_r0_y -
             g_r0_x*s_1)*(h_1_y + h_2_y + b_r1_y*rps_link1_mass + b_r1_y*rps_link2_mass);
         o->sum[0][k] = potential_t_3;  /* total_rps */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
     }
 }
 

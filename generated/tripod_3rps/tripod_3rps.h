@@ -87,8 +87,7 @@ typedef struct {
             J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
             h_star_z, platform_mass;
     /* legs of type rps */
-    tripod_3rps_real J_group_1_zz[3], Q_t_10[3], Q_t_11[3], Q_t_12[3], Q_t_13[3], Q_t_5[3], Q_t_6[3],
-            Q_t_7[3], Q_t_8[3], Q_t_9[3], b_r0_x[3], b_r0_y[3], branch_1[3], g_r0_x[3], g_r0_y[3],
+    tripod_3rps_real J_group_1_zz[3], b_r0_x[3], b_r0_y[3], branch_1[3], g_r0_x[3], g_r0_y[3],
             h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], potential_t[3], rps_base_frame_xx[3],
             rps_base_frame_xy[3], rps_base_frame_xz[3], rps_base_frame_yx[3], rps_base_frame_yy[3],
             rps_base_frame_yz[3], rps_base_frame_zx[3], rps_base_frame_zy[3], rps_base_frame_zz[3],
@@ -106,7 +105,7 @@ extern const tripod_3rps_real tripod_3rps_HOME_Q[TRIPOD_3RPS_NJ];
    model is all NaN. */
 int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *model);
 
-/* Inertia matrix M. 294 mul, 288 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 309 mul, 267 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3rps_M(const tripod_3rps_model *model, const tripod_3rps_real *X, tripod_3rps_real *M);
 size_t tripod_3rps_M_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     tripod_3rps_real *M, int *status);
@@ -131,7 +130,7 @@ int tripod_3rps_Hk(const tripod_3rps_model *model, const tripod_3rps_real *X, tr
 size_t tripod_3rps_Hk_batch(const tripod_3rps_model *model, size_t n, const tripod_3rps_real *X,
     tripod_3rps_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 570 mul, 489 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 585 mul, 468 add, 3 div, 3 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3rps_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const
     tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H);
@@ -185,7 +184,7 @@ size_t tripod_3rps_inverse_dynamics_batch(const tripod_3rps_model *model, size_t
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
     tripod_3rps_real *wrench, tripod_3rps_real *tau, tripod_3rps_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 570 mul, 489 add, 3 div, 3 sqrt, 0
+/* Acceleration A under the actuator forces tau and the wrench. 585 mul, 468 add, 3 div, 3 sqrt, 0
    trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW, or
    NULL). Out: A (NV), lambda (NC). */
 int tripod_3rps_forward_dynamics(const tripod_3rps_model *model, const tripod_3rps_real *X, const

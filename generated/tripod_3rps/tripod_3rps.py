@@ -350,20 +350,6 @@ def _prepare(p):
     rps_link1_inertia_zz + rps_link2_inertia_zz - rps_link1_mass*(J_1_t - J_1_t_2) -
         rps_link2_mass*(J_2_t - J_2_t_2)
     )
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
-    Q_t = 0.5*rps_link2_mass
-    Q_t_2 = Q_t*rps_base_frame_xz
-    Q_t_3 = Q_t*rps_base_frame_yz
-    Q_t_4 = Q_t*rps_base_frame_zz
-    Q_t_5 = Q_t_2*rps_base_frame_xz
-    Q_t_6 = Q_t_3*rps_base_frame_xz
-    Q_t_7 = Q_t_2*rps_base_frame_yz
-    Q_t_8 = Q_t_4*rps_base_frame_xz
-    Q_t_9 = Q_t_2*rps_base_frame_zz
-    Q_t_10 = Q_t_3*rps_base_frame_yz
-    Q_t_11 = Q_t_4*rps_base_frame_yz
-    Q_t_12 = Q_t_3*rps_base_frame_zz
-    Q_t_13 = Q_t_4*rps_base_frame_zz
     # (rps-N5) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r0_x = (
     gravity_x*rps_base_frame_xx + gravity_y*rps_base_frame_yx + gravity_z*rps_base_frame_zx
@@ -415,15 +401,6 @@ def _prepare(p):
     legs = {
         "rps": {
             "J_group_1_zz": np.broadcast_to(J_group_1_zz, _rps),
-            "Q_t_10": np.broadcast_to(Q_t_10, _rps),
-            "Q_t_11": np.broadcast_to(Q_t_11, _rps),
-            "Q_t_12": np.broadcast_to(Q_t_12, _rps),
-            "Q_t_13": np.broadcast_to(Q_t_13, _rps),
-            "Q_t_5": np.broadcast_to(Q_t_5, _rps),
-            "Q_t_6": np.broadcast_to(Q_t_6, _rps),
-            "Q_t_7": np.broadcast_to(Q_t_7, _rps),
-            "Q_t_8": np.broadcast_to(Q_t_8, _rps),
-            "Q_t_9": np.broadcast_to(Q_t_9, _rps),
             "b_r0_x": np.broadcast_to(b_r0_x, _rps),
             "b_r0_y": np.broadcast_to(b_r0_y, _rps),
             "branch_1": np.broadcast_to(branch_1, _rps),
@@ -606,7 +583,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 570 mul, 489 add, 3 div, 3 sqrt, 0 trig
+# dynamics: 585 mul, 468 add, 3 div, 3 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -714,12 +691,11 @@ def _dynamics_before(c, X, V, f):
 def _dynamics_rps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_1_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_1,
-        g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx, rps_base_frame_xy,
-        rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy, rps_base_frame_yz,
-        rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz, rps_base_point_x,
-        rps_base_point_y, rps_base_point_z, rps_link2_mass, rps_platform_point_x,
-        rps_platform_point_y, rps_platform_point_z, size, size_t_3,
+    J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rps_base_frame_xx,
+        rps_base_frame_xy, rps_base_frame_xz, rps_base_frame_yx, rps_base_frame_yy,
+        rps_base_frame_yz, rps_base_frame_zx, rps_base_frame_zy, rps_base_frame_zz,
+        rps_base_point_x, rps_base_point_y, rps_base_point_z, rps_link2_mass,
+        rps_platform_point_x, rps_platform_point_y, rps_platform_point_z, size, size_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -746,52 +722,66 @@ def _dynamics_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
-    # (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_t = h_2_y*inv_root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
     axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
     axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
     axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
-    Q_t = (
-    inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1)) -
-        rps_link2_mass
+    # (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_t = h_2_y*inv_root_1
+    # (rps-N28) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_t = (
+    inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1))
     )
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = Q_t_2*axis_y_rps_axes1_in_base_x - axis_x_rps_axes1_in_base_x*d_phi_2_t
-    Q_t_4 = Q_t_2*axis_y_rps_axes1_in_base_y - axis_x_rps_axes1_in_base_y*d_phi_2_t
-    Q_t_14 = Q_t_2*axis_y_rps_axes1_in_base_z - axis_x_rps_axes1_in_base_z*d_phi_2_t
-    Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5
-    Q_t_16 = 2.0*Q_t_15 + rps_link2_mass
-    Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x - Q_t_6 - Q_t_7
-    Q_t_18 = Q_t_14*axis_y_rps_axes1_in_base_x + Q_t_3*axis_y_rps_axes1_in_base_z - Q_t_8 - Q_t_9
-    Q_t_19 = Q_t_4*axis_y_rps_axes1_in_base_y - Q_t_10
-    Q_t_20 = 2.0*Q_t_19 + rps_link2_mass
-    Q_t_21 = (
-    Q_t_14*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_z - Q_t_11 - Q_t_12
+    # (rps-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_in_base_x = (
+    axis_y_rps_axes1_in_base_x*d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
     )
-    Q_t_22 = Q_t_14*axis_y_rps_axes1_in_base_z - Q_t_13
-    Q_t_23 = 2.0*Q_t_22 + rps_link2_mass
+    d_c_in_base_y = (
+    axis_y_rps_axes1_in_base_y*d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
+    )
+    d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*d_phi_2_t - axis_y_rps_axes1_in_base_x*d_G_t
+    d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*d_phi_2_t - axis_y_rps_axes1_in_base_y*d_G_t
+    d_c_in_base_x_3 = (
+    axis_x_rps_axes1_in_base_x*d_c_in_base_x + axis_y_rps_axes1_in_base_x*d_c_in_base_x_2
+    )
+    d_c_in_base_y_3 = (
+    axis_x_rps_axes1_in_base_y*d_c_in_base_x + axis_y_rps_axes1_in_base_y*d_c_in_base_x_2
+    )
+    d_c_in_base_z = (
+    axis_x_rps_axes1_in_base_z*d_c_in_base_x + axis_y_rps_axes1_in_base_z*d_c_in_base_x_2
+    )
+    d_c_in_base_y_4 = (
+    axis_x_rps_axes1_in_base_y*d_c_in_base_y + axis_y_rps_axes1_in_base_y*d_c_in_base_y_2
+    )
+    d_c_in_base_z_2 = (
+    axis_x_rps_axes1_in_base_z*d_c_in_base_y + axis_y_rps_axes1_in_base_z*d_c_in_base_y_2
+    )
+    d_c_in_base_z_3 = (
+    axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*d_phi_2_t -
+        axis_x_rps_axes1_in_base_z*rps_link2_mass) +
+        axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*d_phi_2_t -
+        axis_y_rps_axes1_in_base_z*d_G_t)
+    )
     # (M2) coupling block of M
-    M_ta_t = Q_t_17*q_in_base_z
-    M_ta_t_2 = Q_t_18*q_in_base_y
+    M_ta_t = d_c_in_base_y_3*q_in_base_z
+    M_ta_t_2 = d_c_in_base_z*q_in_base_y
     M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_16*q_in_base_z - Q_t_18*q_in_base_x
-    M_ta_t_5 = Q_t_16*q_in_base_y - Q_t_17*q_in_base_x
-    M_ta_t_6 = Q_t_20*q_in_base_z - Q_t_21*q_in_base_y
-    M_ta_t_7 = Q_t_21*q_in_base_x
+    M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
+    M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
+    M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
+    M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
     M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_17*q_in_base_y - Q_t_20*q_in_base_x
-    M_ta_t_10 = Q_t_21*q_in_base_z - Q_t_23*q_in_base_y
-    M_ta_t_11 = Q_t_18*q_in_base_z - Q_t_23*q_in_base_x
+    M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
+    M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
+    M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
     M_ta_t_12 = M_ta_t_7 - M_ta_t_2
     # (M3) rotational block of M
     M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
@@ -866,9 +856,10 @@ def _dynamics_rps(c, k, x, s, f):
     Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
     return (
-    ok, (Q_t_16, Q_t_17, Q_t_18, Q_t_20, Q_t_21, Q_t_23, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
+    ok, (d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
+        d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10,
+        M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,
+        U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
         (axis_x_rps_axes1_in_base_x, axis_x_rps_axes1_in_base_y, axis_x_rps_axes1_in_base_z,
         H_a_2_x, H_a_2_y, H_a_2_z, rps_base_frame_xz, rps_base_frame_yz, rps_base_frame_zz,
         Hk_a_1_x, Hk_a_1_y, Hk_a_1_z, u_1_tip_z,),
@@ -890,23 +881,23 @@ def _dynamics_after(c, s, t, f):
         total_rps_x, total_rps_y, total_rps_z, total_rps_x_2, total_rps_y_2, total_rps_z_2,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = platform_mass + total_rps_xx
-    M_tt_yy = platform_mass + total_rps_yy
-    M_tt_zz = platform_mass + total_rps_zz
+    M_tt_xx = platform_mass - total_rps_xx
+    M_tt_yy = platform_mass - total_rps_yy
+    M_tt_zz = platform_mass - total_rps_zz
     # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z + total_rps_xy_2
-    M_ta_xz = -h_star_in_base_y - total_rps_xz_2
-    M_ta_yx = -h_star_in_base_z - total_rps_yx
-    M_ta_yz = h_star_in_base_x - total_rps_yz_2
-    M_ta_zx = h_star_in_base_y - total_rps_zx
-    M_ta_zy = total_rps_zy - h_star_in_base_x
+    M_ta_xy = h_star_in_base_z - total_rps_xy_2
+    M_ta_xz = total_rps_xz_2 - h_star_in_base_y
+    M_ta_yx = total_rps_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_rps_yz_2
+    M_ta_zx = h_star_in_base_y + total_rps_zx
+    M_ta_zy = -h_star_in_base_x - total_rps_zy
     # (M3) rotational block of M
-    M_aa_xx = J_star_t_10 + total_rps_xx_3
-    M_aa_xy = J_star_t_11 - total_rps_xy_3
-    M_aa_xz = J_star_t_12 + total_rps_xz_3
-    M_aa_yy = J_star_t_14 + total_rps_yy_3
-    M_aa_yz = J_star_t_15 - total_rps_yz_3
-    M_aa_zz = J_star_t_17 + total_rps_zz_3
+    M_aa_xx = J_star_t_10 - total_rps_xx_3
+    M_aa_xy = J_star_t_11 + total_rps_xy_3
+    M_aa_xz = J_star_t_12 - total_rps_xz_3
+    M_aa_yy = J_star_t_14 - total_rps_yy_3
+    M_aa_yz = J_star_t_15 + total_rps_yz_3
+    M_aa_zz = J_star_t_17 - total_rps_zz_3
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rps_x
     Z_t_y = Z_p_y + total_rps_y
@@ -917,16 +908,16 @@ def _dynamics_after(c, s, t, f):
     Z_a_z = Z_q_in_base_z + total_rps_z_2
     ok = True
     return (
-    ok, (M_tt_xx, total_rps_xy, total_rps_xy, total_rps_xz, total_rps_xz, M_tt_yy, total_rps_yz,
-        total_rps_yz, M_tt_zz, -total_rps_xx_2, -total_rps_xx_2, M_ta_xy, M_ta_xy, M_ta_xz,
-        M_ta_xz, M_ta_yx, M_ta_yx, total_rps_yy_2, total_rps_yy_2, M_ta_yz, M_ta_yz, M_ta_zx,
-        M_ta_zx, M_ta_zy, M_ta_zy, total_rps_zz_2, total_rps_zz_2, M_aa_xx, M_aa_xy, M_aa_xy,
-        M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y, Z_t_z, Z_a_x, Z_a_y,
-        Z_a_z,),
+    ok, (M_tt_xx, -total_rps_xy, -total_rps_xy, -total_rps_xz, -total_rps_xz, M_tt_yy,
+        -total_rps_yz, -total_rps_yz, M_tt_zz, total_rps_xx_2, total_rps_xx_2, M_ta_xy, M_ta_xy,
+        M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_rps_yy_2, -total_rps_yy_2, M_ta_yz, M_ta_yz,
+        M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_rps_zz_2, -total_rps_zz_2, M_aa_xx, M_aa_xy,
+        M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz, Z_t_x, Z_t_y, Z_t_z, Z_a_x,
+        Z_a_y, Z_a_z,),
     )
 
 
-# M: 294 mul, 288 add, 3 div, 3 sqrt, 0 trig
+# M: 309 mul, 267 add, 3 div, 3 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -997,11 +988,10 @@ def _M_before(c, X, f):
 def _M_rps(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_group_1_zz, Q_t_10, Q_t_11, Q_t_12, Q_t_13, Q_t_5, Q_t_6, Q_t_7, Q_t_8, Q_t_9, branch_1,
-        h_2_x, h_2_y, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
-        rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-        rps_base_point_z, rps_link2_mass, rps_platform_point_x, rps_platform_point_y,
-        rps_platform_point_z, size, size_t_3,
+    J_group_1_zz, branch_1, h_2_x, h_2_y, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx,
+        rps_base_frame_yy, rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x,
+        rps_base_point_y, rps_base_point_z, rps_link2_mass, rps_platform_point_x,
+        rps_platform_point_y, rps_platform_point_z, size, size_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rps-K1) from the base point to the connection point
@@ -1025,55 +1015,66 @@ def _M_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
-    # (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
-    d_phi_2_t = h_2_y*inv_root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
-    Q_t = (
-    inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1)) -
-        rps_link2_mass
+    axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
+    axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
+    axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
+    # (rps-N7) coefficient of the acceleration in: inertia force of link 2 from its turning about its reference point
+    d_phi_2_t = h_2_y*inv_root_1
+    # (rps-N28) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_t = (
+    inv_root_1*(h_2_x + J_group_1_zz*inv_root_1 + root_1*(rps_link2_mass + h_2_x*inv_root_1))
     )
-    Q_t_2 = 0.5*Q_t
-    Q_t_3 = (
-    Q_t_2*axis_y_rps_axes1_in_base_x - d_phi_2_t*(c_1*rps_base_frame_xx + rps_base_frame_xy*s_1)
+    # (rps-N31) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d_c_in_base_x = (
+    axis_y_rps_axes1_in_base_x*d_phi_2_t - axis_x_rps_axes1_in_base_x*rps_link2_mass
     )
-    Q_t_4 = (
-    Q_t_2*axis_y_rps_axes1_in_base_y - d_phi_2_t*(c_1*rps_base_frame_yx + rps_base_frame_yy*s_1)
+    d_c_in_base_y = (
+    axis_y_rps_axes1_in_base_y*d_phi_2_t - axis_x_rps_axes1_in_base_y*rps_link2_mass
     )
-    Q_t_14 = (
-    Q_t_2*axis_y_rps_axes1_in_base_z - d_phi_2_t*(c_1*rps_base_frame_zx + rps_base_frame_zy*s_1)
+    d_c_in_base_x_2 = axis_x_rps_axes1_in_base_x*d_phi_2_t - axis_y_rps_axes1_in_base_x*d_G_t
+    d_c_in_base_y_2 = axis_x_rps_axes1_in_base_y*d_phi_2_t - axis_y_rps_axes1_in_base_y*d_G_t
+    d_c_in_base_x_3 = (
+    axis_x_rps_axes1_in_base_x*d_c_in_base_x + axis_y_rps_axes1_in_base_x*d_c_in_base_x_2
     )
-    Q_t_15 = Q_t_3*axis_y_rps_axes1_in_base_x - Q_t_5
-    Q_t_16 = 2.0*Q_t_15 + rps_link2_mass
-    Q_t_17 = Q_t_3*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_x - Q_t_6 - Q_t_7
-    Q_t_18 = Q_t_14*axis_y_rps_axes1_in_base_x + Q_t_3*axis_y_rps_axes1_in_base_z - Q_t_8 - Q_t_9
-    Q_t_19 = Q_t_4*axis_y_rps_axes1_in_base_y - Q_t_10
-    Q_t_20 = 2.0*Q_t_19 + rps_link2_mass
-    Q_t_21 = (
-    Q_t_14*axis_y_rps_axes1_in_base_y + Q_t_4*axis_y_rps_axes1_in_base_z - Q_t_11 - Q_t_12
+    d_c_in_base_y_3 = (
+    axis_x_rps_axes1_in_base_y*d_c_in_base_x + axis_y_rps_axes1_in_base_y*d_c_in_base_x_2
     )
-    Q_t_22 = Q_t_14*axis_y_rps_axes1_in_base_z - Q_t_13
-    Q_t_23 = 2.0*Q_t_22 + rps_link2_mass
+    d_c_in_base_z = (
+    axis_x_rps_axes1_in_base_z*d_c_in_base_x + axis_y_rps_axes1_in_base_z*d_c_in_base_x_2
+    )
+    d_c_in_base_y_4 = (
+    axis_x_rps_axes1_in_base_y*d_c_in_base_y + axis_y_rps_axes1_in_base_y*d_c_in_base_y_2
+    )
+    d_c_in_base_z_2 = (
+    axis_x_rps_axes1_in_base_z*d_c_in_base_y + axis_y_rps_axes1_in_base_z*d_c_in_base_y_2
+    )
+    d_c_in_base_z_3 = (
+    axis_x_rps_axes1_in_base_z*(axis_y_rps_axes1_in_base_z*d_phi_2_t -
+        axis_x_rps_axes1_in_base_z*rps_link2_mass) +
+        axis_y_rps_axes1_in_base_z*(axis_x_rps_axes1_in_base_z*d_phi_2_t -
+        axis_y_rps_axes1_in_base_z*d_G_t)
+    )
     # (M2) coupling block of M
-    M_ta_t = Q_t_17*q_in_base_z
-    M_ta_t_2 = Q_t_18*q_in_base_y
+    M_ta_t = d_c_in_base_y_3*q_in_base_z
+    M_ta_t_2 = d_c_in_base_z*q_in_base_y
     M_ta_t_3 = M_ta_t - M_ta_t_2
-    M_ta_t_4 = Q_t_16*q_in_base_z - Q_t_18*q_in_base_x
-    M_ta_t_5 = Q_t_16*q_in_base_y - Q_t_17*q_in_base_x
-    M_ta_t_6 = Q_t_20*q_in_base_z - Q_t_21*q_in_base_y
-    M_ta_t_7 = Q_t_21*q_in_base_x
+    M_ta_t_4 = d_c_in_base_x_3*q_in_base_z - d_c_in_base_z*q_in_base_x
+    M_ta_t_5 = d_c_in_base_x_3*q_in_base_y - d_c_in_base_y_3*q_in_base_x
+    M_ta_t_6 = d_c_in_base_y_4*q_in_base_z - d_c_in_base_z_2*q_in_base_y
+    M_ta_t_7 = d_c_in_base_z_2*q_in_base_x
     M_ta_t_8 = M_ta_t - M_ta_t_7
-    M_ta_t_9 = Q_t_17*q_in_base_y - Q_t_20*q_in_base_x
-    M_ta_t_10 = Q_t_21*q_in_base_z - Q_t_23*q_in_base_y
-    M_ta_t_11 = Q_t_18*q_in_base_z - Q_t_23*q_in_base_x
+    M_ta_t_9 = d_c_in_base_y_3*q_in_base_y - d_c_in_base_y_4*q_in_base_x
+    M_ta_t_10 = d_c_in_base_z_2*q_in_base_z - d_c_in_base_z_3*q_in_base_y
+    M_ta_t_11 = d_c_in_base_z*q_in_base_z - d_c_in_base_z_3*q_in_base_x
     M_ta_t_12 = M_ta_t_7 - M_ta_t_2
     # (M3) rotational block of M
     M_aa_t = M_ta_t_6*q_in_base_z - M_ta_t_10*q_in_base_y
@@ -1084,9 +1085,9 @@ def _M_rps(c, k, x, s, f):
     M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x
     ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
     return (
-    ok, (Q_t_16, Q_t_17, Q_t_18, Q_t_20, Q_t_21, Q_t_23, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6,
-        M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4,
-        M_aa_t_5, M_aa_t_6,), (),
+    ok, (d_c_in_base_x_3, d_c_in_base_y_3, d_c_in_base_z, d_c_in_base_y_4, d_c_in_base_z_2,
+        d_c_in_base_z_3, M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10,
+        M_ta_t_11, M_ta_t_12, M_aa_t, M_aa_t_2, M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6,), (),
     )
 
 
@@ -1103,30 +1104,30 @@ def _M_after(c, s, t, f):
         total_rps_xy_3, total_rps_xz_3, total_rps_yy_3, total_rps_yz_3, total_rps_zz_3,
     ) = t
     # (M1) translational block of M
-    M_tt_xx = platform_mass + total_rps_xx
-    M_tt_yy = platform_mass + total_rps_yy
-    M_tt_zz = platform_mass + total_rps_zz
+    M_tt_xx = platform_mass - total_rps_xx
+    M_tt_yy = platform_mass - total_rps_yy
+    M_tt_zz = platform_mass - total_rps_zz
     # (M2) coupling block of M
-    M_ta_xy = h_star_in_base_z + total_rps_xy_2
-    M_ta_xz = -h_star_in_base_y - total_rps_xz_2
-    M_ta_yx = -h_star_in_base_z - total_rps_yx
-    M_ta_yz = h_star_in_base_x - total_rps_yz_2
-    M_ta_zx = h_star_in_base_y - total_rps_zx
-    M_ta_zy = total_rps_zy - h_star_in_base_x
+    M_ta_xy = h_star_in_base_z - total_rps_xy_2
+    M_ta_xz = total_rps_xz_2 - h_star_in_base_y
+    M_ta_yx = total_rps_yx - h_star_in_base_z
+    M_ta_yz = h_star_in_base_x + total_rps_yz_2
+    M_ta_zx = h_star_in_base_y + total_rps_zx
+    M_ta_zy = -h_star_in_base_x - total_rps_zy
     # (M3) rotational block of M
-    M_aa_xx = J_star_t_10 + total_rps_xx_3
-    M_aa_xy = J_star_t_11 - total_rps_xy_3
-    M_aa_xz = J_star_t_12 + total_rps_xz_3
-    M_aa_yy = J_star_t_14 + total_rps_yy_3
-    M_aa_yz = J_star_t_15 - total_rps_yz_3
-    M_aa_zz = J_star_t_17 + total_rps_zz_3
+    M_aa_xx = J_star_t_10 - total_rps_xx_3
+    M_aa_xy = J_star_t_11 + total_rps_xy_3
+    M_aa_xz = J_star_t_12 - total_rps_xz_3
+    M_aa_yy = J_star_t_14 - total_rps_yy_3
+    M_aa_yz = J_star_t_15 + total_rps_yz_3
+    M_aa_zz = J_star_t_17 - total_rps_zz_3
     ok = True
     return (
-    ok, (M_tt_xx, total_rps_xy, total_rps_xy, total_rps_xz, total_rps_xz, M_tt_yy, total_rps_yz,
-        total_rps_yz, M_tt_zz, -total_rps_xx_2, -total_rps_xx_2, M_ta_xy, M_ta_xy, M_ta_xz,
-        M_ta_xz, M_ta_yx, M_ta_yx, total_rps_yy_2, total_rps_yy_2, M_ta_yz, M_ta_yz, M_ta_zx,
-        M_ta_zx, M_ta_zy, M_ta_zy, total_rps_zz_2, total_rps_zz_2, M_aa_xx, M_aa_xy, M_aa_xy,
-        M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
+    ok, (M_tt_xx, -total_rps_xy, -total_rps_xy, -total_rps_xz, -total_rps_xz, M_tt_yy,
+        -total_rps_yz, -total_rps_yz, M_tt_zz, total_rps_xx_2, total_rps_xx_2, M_ta_xy, M_ta_xy,
+        M_ta_xz, M_ta_xz, M_ta_yx, M_ta_yx, -total_rps_yy_2, -total_rps_yy_2, M_ta_yz, M_ta_yz,
+        M_ta_zx, M_ta_zx, M_ta_zy, M_ta_zy, -total_rps_zz_2, -total_rps_zz_2, M_aa_xx, M_aa_xy,
+        M_aa_xy, M_aa_xz, M_aa_xz, M_aa_yy, M_aa_yz, M_aa_yz, M_aa_zz,),
     )
 
 
@@ -1251,13 +1252,12 @@ def _Z_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
@@ -1408,13 +1408,12 @@ def _H_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1
     axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1
     axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1
@@ -1729,13 +1728,12 @@ def _required_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
@@ -1878,7 +1876,7 @@ def _inverse_kinematics_rps(c, k, x, s, f):
     (
     branch_1, rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
         rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
-        rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z, size,
+        rps_base_point_z, rps_platform_point_x, rps_platform_point_y, rps_platform_point_z,
         size_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -1903,11 +1901,11 @@ def _inverse_kinematics_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
+    # (rps-K7) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
     # (rps-K9) displacement of joint 1
     q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3)
     return (ok, (), (q_1, root_1,),)
 
 
@@ -2000,9 +1998,8 @@ def _joint_rates_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
@@ -2128,13 +2125,12 @@ def _joint_accelerations_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
@@ -2350,13 +2346,12 @@ def _legs_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
-    # (rps-N33) inertia of the leg at the connection point, without the mass gathered there
+    # (rps-V4) reciprocal vector 1
     axis_y_rps_axes1_in_base_x = c_1*rps_base_frame_xy - rps_base_frame_xx*s_1
     axis_y_rps_axes1_in_base_y = c_1*rps_base_frame_yy - rps_base_frame_yx*s_1
     axis_y_rps_axes1_in_base_z = c_1*rps_base_frame_zy - rps_base_frame_zx*s_1
@@ -2481,7 +2476,7 @@ def _potential_rps(c, k, x, s, f):
         rps_base_frame_xx, rps_base_frame_xy, rps_base_frame_yx, rps_base_frame_yy,
         rps_base_frame_zx, rps_base_frame_zy, rps_base_point_x, rps_base_point_y,
         rps_base_point_z, rps_link1_mass, rps_link2_mass, rps_platform_point_x,
-        rps_platform_point_y, rps_platform_point_z, size, size_t_3,
+        rps_platform_point_y, rps_platform_point_z, size_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rps-K1) from the base point to the connection point
@@ -2505,9 +2500,8 @@ def _potential_rps(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (rps-K6) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (rps-V4) reciprocal vector 1
-    inv_root_1 = 1.0/root_1
     # (rps-K7) cosine of the angle of joint 1 from its reference direction
+    inv_root_1 = 1.0/root_1
     c_1 = inv_root_1*px_1
     # (rps-K8) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*py_1
@@ -2519,7 +2513,7 @@ def _potential_rps(c, k, x, s, f):
         rps_link2_mass*(b_r1_x + root_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y +
         b_r1_y*rps_link1_mass + b_r1_y*rps_link2_mass)
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3)
     return (ok, (potential_t_3,), (),)
 
 
@@ -2548,8 +2542,7 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 3)), ('Hk', (6, 3)), ('constraint_
             _dynamics_rps,
             "rps",
 (),
-('J_group_1_zz', 'Q_t_10', 'Q_t_11', 'Q_t_12', 'Q_t_13', 'Q_t_5', 'Q_t_6', 'Q_t_7', 'Q_t_8',
-            'Q_t_9', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y',
+('J_group_1_zz', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y',
             'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_xz', 'rps_base_frame_yx',
             'rps_base_frame_yy', 'rps_base_frame_yz', 'rps_base_frame_zx', 'rps_base_frame_zy',
             'rps_base_frame_zz', 'rps_base_point_x', 'rps_base_point_y', 'rps_base_point_z',
@@ -2603,8 +2596,7 @@ arrays=(('M', (6, 6)),),
             _M_rps,
             "rps",
 (),
-('J_group_1_zz', 'Q_t_10', 'Q_t_11', 'Q_t_12', 'Q_t_13', 'Q_t_5', 'Q_t_6', 'Q_t_7', 'Q_t_8',
-            'Q_t_9', 'branch_1', 'h_2_x', 'h_2_y', 'rps_base_frame_xx', 'rps_base_frame_xy',
+('J_group_1_zz', 'branch_1', 'h_2_x', 'h_2_y', 'rps_base_frame_xx', 'rps_base_frame_xy',
             'rps_base_frame_yx', 'rps_base_frame_yy', 'rps_base_frame_zx', 'rps_base_frame_zy',
             'rps_base_point_x', 'rps_base_point_y', 'rps_base_point_z', 'rps_link2_mass',
             'rps_platform_point_x', 'rps_platform_point_y', 'rps_platform_point_z', 'size',
@@ -2817,7 +2809,7 @@ arrays=(('q', (6,)),),
 ('branch_1', 'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_yx', 'rps_base_frame_yy',
             'rps_base_frame_zx', 'rps_base_frame_zy', 'rps_base_point_x', 'rps_base_point_y',
             'rps_base_point_z', 'rps_platform_point_x', 'rps_platform_point_y',
-            'rps_platform_point_z', 'size', 'size_t_3'),
+            'rps_platform_point_z', 'size_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -2965,8 +2957,7 @@ arrays=(('potential', (1,)),),
             'potential_t', 'rps_base_frame_xx', 'rps_base_frame_xy', 'rps_base_frame_yx',
             'rps_base_frame_yy', 'rps_base_frame_zx', 'rps_base_frame_zy', 'rps_base_point_x',
             'rps_base_point_y', 'rps_base_point_z', 'rps_link1_mass', 'rps_link2_mass',
-            'rps_platform_point_x', 'rps_platform_point_y', 'rps_platform_point_z', 'size',
-            'size_t_3'),
+            'rps_platform_point_x', 'rps_platform_point_y', 'rps_platform_point_z', 'size_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             1,

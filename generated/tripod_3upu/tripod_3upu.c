@@ -407,8 +407,8 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
             upu_platform_point_y*upu_platform_point_y + upu_platform_point_z*upu_platform_point_z;
         const real size_t_3 = size_t_ + size_t_2;
         const real size_ = root(size_t_3);
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = size_*size_t_3;
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_t = size_*size_t_3;
         /* (upu-G4) first moment of link 3 about the origin of link 3 */
         const real h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass;
         const real h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass;
@@ -490,6 +490,7 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->h_3_x[leg] = h_3_x;
         model->h_3_y[leg] = h_3_y;
         model->h_3_z[leg] = h_3_z;
+        model->n_c1_t[leg] = n_c1_t;
         model->size_[leg] = size_;
         model->size_t_3[leg] = size_t_3;
         model->upu_base_frame_xx[leg] = upu_base_frame_xx;
@@ -512,14 +513,13 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_platform_point_x[leg] = upu_platform_point_x;
         model->upu_platform_point_y[leg] = upu_platform_point_y;
         model->upu_platform_point_z[leg] = upu_platform_point_z;
-        model->volume_c_t[leg] = volume_c_t;
     }
     return TRIPOD_3UPU_OK;
 }
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 2235 mul, 1521 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -731,6 +731,7 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -752,7 +753,6 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -809,13 +809,12 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -833,10 +832,10 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real w_1_t_4 = inv_w_1_t_25*n_c1_z;
+        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
         const real d_alpha_1_t = inv_w_1_t_25*s_2;
         const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
         /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
@@ -848,9 +847,6 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
         /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_t = c_2*h_3_y;
-        const real d_Gamma_1_y = s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
-            J_group_2_yz*c_2*inv_root_2;
         const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
             d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
             d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
@@ -859,7 +855,7 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
            leg's inertia and weight along all freedoms */
         const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
             d_alpha_1_t*h_3_y*root_2);
-        /* (upu-N50) inertia of the leg at the connection point, without the mass gathered there */
+        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
         const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
             h_3_x*inv_root_2)) - upu_link3_mass;
         const real Q_t_2 = R(0.5)*Q_t;
@@ -886,42 +882,40 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
             Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
         const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
         const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
+        /* (upu-V14) moment part of reciprocal wrench 1 */
         const real o_1_x = end_p1_r3_y*w_1_t_4;
         const real o_1_y = end_p1_r3_x*w_1_t_4;
-        const real o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2);
-        const real o_1_z = n_m1_r0_y*w_1_t_4;
-        /* (upu-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d0_alpha_1_t = o_1_y_2*s_2;
-        const real d0_alpha_1_t_2 = c_2*o_1_y_2;
-        const real d0_alpha_1_t_3 = o_1_z*s_2;
-        const real d0_alpha_1_t_4 = c_2*o_1_z;
-        const real _x = d0_alpha_1_t_3*s_2 - c_2*d0_alpha_1_t;
-        const real _y = -c_2*d0_alpha_1_t_3 - d0_alpha_1_t*s_2;
-        const real _x_2 = c_2*d0_alpha_1_t_2 - d0_alpha_1_t_4*s_2;
-        const real _y_2 = c_2*d0_alpha_1_t_4 + d0_alpha_1_t_2*s_2;
+        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real d0_alpha_1_xx = o_1_x*s_2;
+        const real d0_alpha_1_xy = o_1_y*s_2;
+        const real d0_alpha_1_yx = c_2*o_1_x;
+        const real d0_alpha_1_yy = c_2*o_1_y;
         /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
            less gravity */
-        const real d0_acc_3_t = _x_2*root_2;
-        const real d0_acc_3_t_2 = _y_2*root_2;
+        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
+        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
         /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
            reference point */
-        const real d0_phi_3_t = _x_2*h_3_y;
-        const real d0_phi_3_t_2 = _y_2*h_3_y;
+        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
+        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
         /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d0_Gamma_1_x = s_2*(J_group_2_xx*_x + J_group_2_xy*_x_2 + d0_acc_3_t*h_3_z) -
-            c_2*(J_group_2_xy*_x + J_group_2_yy*_x_2 + d0_acc_3_t*h_3_x - root_2*(-_x*h_3_z -
-            _x_2*h_3_x - d0_acc_3_t*upu_link3_mass));
-        const real d0_Gamma_1_y = s_2*(J_group_2_xx*_y + J_group_2_xy*_y_2 + d0_acc_3_t_2*h_3_z) -
-            c_2*(J_group_2_xy*_y + J_group_2_yy*_y_2 + d0_acc_3_t_2*h_3_x - root_2*(-_y*h_3_z -
-            _y_2*h_3_x - d0_acc_3_t_2*upu_link3_mass));
+        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
+            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
+            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
+            d0_alpha_1_yx*h_3_x));
+        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
+            d0_alpha_1_xy*h_3_z));
         /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
         const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
         const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
-        const real d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2);
-        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2);
+        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
+            - J_group_2_xz*d0_alpha_1_xx);
+        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
+            - d0_alpha_1_xy*h_3_y*root_2);
         /* (M2) coupling block of M */
         const real M_ta_t = Q_t_13*q_in_base_z;
         const real M_ta_t_2 = Q_t_14*q_in_base_y;
@@ -934,194 +928,105 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
         const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
         const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upu-N47) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real _x_3 = c_2*d0_phi_3_t + d0_G_t_3*s_2;
-        const real _y_3 = c_2*d0_G_t_3 - d0_phi_3_t*s_2;
-        const real _x_4 = c_2*d0_phi_3_t_2 + d0_G_t_4*s_2;
-        const real _y_4 = c_2*d0_G_t_4 - d0_phi_3_t_2*s_2;
-        const real _x_5 = -_x_3*c_2 - _x_4*s_2;
-        const real _y_5 = _x_3*s_2 - _x_4*c_2;
-        const real _x_6 = -_y_3*c_2 - _y_4*s_2;
-        const real _y_6 = _y_3*s_2 - _y_4*c_2;
-        const real _x_7 = c_2*d0_G_t + d0_G_t_2*s_2;
-        const real _y_7 = c_2*d0_G_t_2 - d0_G_t*s_2;
-        const real _x_8 = -_x_5*s_1 - _x_7*c_1;
-        const real _y_8 = _x_7*s_1 - _x_5*c_1;
-        const real _x_9 = -_y_5*s_1 - _y_7*c_1;
-        const real _y_9 = _y_7*s_1 - _y_5*c_1;
-        const real d0_c_t = _x_8*s_1;
-        const real d0_c_t_2 = _x_8*c_1;
-        const real d0_c_t_3 = _y_8*s_1;
-        const real d0_c_t_4 = _y_8*c_1;
-        const real d0_c_t_5 = _x_6*s_1;
-        const real d0_c_t_6 = _x_6*c_1;
-        const real _x_10 = -d0_c_t*upu_base_frame_xx - d0_c_t_3*upu_base_frame_xy -
-            d0_c_t_5*upu_base_frame_xz;
-        const real _y_10 = -d0_c_t*upu_base_frame_yx - d0_c_t_3*upu_base_frame_yy -
-            d0_c_t_5*upu_base_frame_yz;
-        const real _z = -d0_c_t*upu_base_frame_zx - d0_c_t_3*upu_base_frame_zy -
-            d0_c_t_5*upu_base_frame_zz;
-        const real _x_11 = -d0_c_t_2*upu_base_frame_xx - d0_c_t_4*upu_base_frame_xy -
-            d0_c_t_6*upu_base_frame_xz;
-        const real _y_11 = -d0_c_t_2*upu_base_frame_yx - d0_c_t_4*upu_base_frame_yy -
-            d0_c_t_6*upu_base_frame_yz;
-        const real _z_2 = -d0_c_t_2*upu_base_frame_zx - d0_c_t_4*upu_base_frame_zy -
-            d0_c_t_6*upu_base_frame_zz;
-        const real _x_12 = _x_9*upu_base_frame_xx + _y_6*upu_base_frame_xz +
-            _y_9*upu_base_frame_xy;
-        const real _y_12 = _x_9*upu_base_frame_yx + _y_6*upu_base_frame_yz +
-            _y_9*upu_base_frame_yy;
-        const real _z_3 = _x_9*upu_base_frame_zx + _y_6*upu_base_frame_zz +
-            _y_9*upu_base_frame_zy;
-        const real _y_13 = _x_10*upu_base_frame_yx + _x_11*upu_base_frame_yy +
-            _x_12*upu_base_frame_yz;
-        const real _z_4 = _x_10*upu_base_frame_zx + _x_11*upu_base_frame_zy +
-            _x_12*upu_base_frame_zz;
-        const real _x_13 = _y_10*upu_base_frame_xx + _y_11*upu_base_frame_xy +
-            _y_12*upu_base_frame_xz;
-        const real _y_14 = _y_10*upu_base_frame_yx + _y_11*upu_base_frame_yy +
-            _y_12*upu_base_frame_yz;
-        const real _z_5 = _y_10*upu_base_frame_zx + _y_11*upu_base_frame_zy +
-            _y_12*upu_base_frame_zz;
-        const real _x_14 = _z*upu_base_frame_xx + _z_2*upu_base_frame_xy + _z_3*upu_base_frame_xz;
-        const real _y_15 = _z*upu_base_frame_yx + _z_2*upu_base_frame_yy + _z_3*upu_base_frame_yz;
-        const real _z_6 = _z*upu_base_frame_zx + _z_2*upu_base_frame_zy + _z_3*upu_base_frame_zz;
+        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
+        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
+        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
+        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
+        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
+        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
+        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
+        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
+        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
+        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
+        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
+        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
+        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
+        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
         /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t + _x_10*upu_base_frame_xx + _x_11*upu_base_frame_xy +
-            _x_12*upu_base_frame_xz - M_ta_t_2;
-        const real M_ta_t_13 = M_ta_t_3 - _y_13;
-        const real M_ta_t_14 = M_ta_t_4 + _z_4;
-        const real M_ta_t_15 = M_ta_t_5 + _x_13;
-        const real M_ta_t_16 = M_ta_t_7 - _y_14;
-        const real M_ta_t_17 = M_ta_t_8 + _z_5;
-        const real M_ta_t_18 = M_ta_t_9 + _x_14;
-        const real M_ta_t_19 = M_ta_t_10 - _y_15;
-        const real M_ta_t_20 = M_ta_t_11 - _z_6;
-        /* (upu-N43) coefficient of the acceleration in: moment at the connection point that balances the
+        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
+        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
+        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
+        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
+        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
+        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
+        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
+        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
+        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
            leg's inertia and weight along all freedoms */
-        const real d0_G_m_t = d0_Gamma_1_x*o_1_x;
-        const real d0_G_m_t_2 = d0_Gamma_1_y*o_1_x;
-        const real d0_G_m_t_3 = d0_Gamma_1_x*o_1_y;
-        const real d0_G_m_t_4 = d0_Gamma_1_y*o_1_y;
-        /* (upu-N44) coefficient of the acceleration in: moment at the connection point that balances the
+        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
+        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_m_t = d_Gamma_1_t*o_1_x;
-        const real d_G_m_t_2 = d_Gamma_1_y*o_1_x;
-        const real d_G_m_t_3 = d_Gamma_1_z*o_1_x;
-        const real d_G_m_t_4 = d_Gamma_1_t*o_1_y;
-        const real d_G_m_t_5 = d_Gamma_1_y*o_1_y;
-        const real d_G_m_t_6 = d_Gamma_1_z*o_1_y;
-        /* (upu-N53) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real _x_15 = c_2*d_G_m_t - d_G_m_t_4*s_2;
-        const real _y_16 = -c_2*d_G_m_t_4 - d_G_m_t*s_2;
-        const real _x_16 = d_G_m_t_5*s_2 - c_2*d_G_m_t_2;
-        const real _y_17 = c_2*d_G_m_t_5 + d_G_m_t_2*s_2;
-        const real _x_17 = d_G_m_t_6*s_2 - c_2*d_G_m_t_3;
-        const real _y_18 = c_2*d_G_m_t_6 + d_G_m_t_3*s_2;
-        const real _x_18 = -_x_15*c_2 - _x_16*s_2;
-        const real _y_19 = _x_15*s_2 - _x_16*c_2;
-        const real _x_19 = -_y_16*c_2 - _y_17*s_2;
-        const real _y_20 = _y_16*s_2 - _y_17*c_2;
-        const real d_c_m_t = _x_17*s_1;
-        const real d_c_m_t_2 = _x_17*c_1;
-        const real d_c_m_t_3 = _x_18*s_1;
-        const real d_c_m_t_4 = _x_18*c_1;
-        const real d_c_m_t_5 = _y_19*s_1;
-        const real d_c_m_t_6 = _y_19*c_1;
-        const real _x_20 = c_1*d_c_m_t + d_c_m_t_3*s_1;
-        const real _y_21 = c_1*d_c_m_t_3 - d_c_m_t*s_1;
-        const real _x_21 = c_1*d_c_m_t_2 + d_c_m_t_4*s_1;
-        const real _y_22 = c_1*d_c_m_t_4 - d_c_m_t_2*s_1;
-        const real _x_22 = -_x_19*s_1 - _y_18*c_1;
-        const real _y_23 = _y_18*s_1 - _x_19*c_1;
-        const real _x_23 = _x_20*upu_base_frame_xx + _x_21*upu_base_frame_xy +
-            _x_22*upu_base_frame_xz;
-        const real _y_24 = _x_20*upu_base_frame_yx + _x_21*upu_base_frame_yy +
-            _x_22*upu_base_frame_yz;
-        const real _z_7 = _x_20*upu_base_frame_zx + _x_21*upu_base_frame_zy +
-            _x_22*upu_base_frame_zz;
-        const real _x_24 = _y_21*upu_base_frame_xx + _y_22*upu_base_frame_xy +
-            _y_23*upu_base_frame_xz;
-        const real _y_25 = _y_21*upu_base_frame_yx + _y_22*upu_base_frame_yy +
-            _y_23*upu_base_frame_yz;
-        const real _z_8 = _y_21*upu_base_frame_zx + _y_22*upu_base_frame_zy +
-            _y_23*upu_base_frame_zz;
-        const real _x_25 = _y_20*upu_base_frame_xz - d_c_m_t_5*upu_base_frame_xx -
-            d_c_m_t_6*upu_base_frame_xy;
-        const real _y_26 = _y_20*upu_base_frame_yz - d_c_m_t_5*upu_base_frame_yx -
-            d_c_m_t_6*upu_base_frame_yy;
-        const real _z_9 = _y_20*upu_base_frame_zz - d_c_m_t_5*upu_base_frame_zx -
-            d_c_m_t_6*upu_base_frame_zy;
-        const real _x_26 = _x_23*upu_base_frame_xx + _x_24*upu_base_frame_xy +
-            _x_25*upu_base_frame_xz;
-        const real _y_27 = _x_23*upu_base_frame_yx + _x_24*upu_base_frame_yy +
-            _x_25*upu_base_frame_yz;
-        const real _z_10 = _x_23*upu_base_frame_zx + _x_24*upu_base_frame_zy +
-            _x_25*upu_base_frame_zz;
-        const real _x_27 = _y_24*upu_base_frame_xx + _y_25*upu_base_frame_xy +
-            _y_26*upu_base_frame_xz;
-        /* (upu-N52) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real _x_28 = d0_G_m_t_3*s_2 - c_2*d0_G_m_t;
-        const real _y_28 = c_2*d0_G_m_t_3 + d0_G_m_t*s_2;
-        const real _x_29 = d0_G_m_t_4*s_2 - c_2*d0_G_m_t_2;
-        const real _y_29 = c_2*d0_G_m_t_4 + d0_G_m_t_2*s_2;
-        const real _x_30 = -_x_28*c_2 - _x_29*s_2;
-        const real _y_30 = _x_28*s_2 - _x_29*c_2;
-        const real _x_31 = -_y_28*c_2 - _y_29*s_2;
-        const real _y_31 = _y_28*s_2 - _y_29*c_2;
-        const real d0_c_m_t = _x_30*s_1;
-        const real d0_c_m_t_2 = _x_30*c_1;
-        const real d0_c_m_t_3 = _y_30*s_1;
-        const real d0_c_m_t_4 = _y_30*c_1;
-        const real d0_c_m_t_5 = d0_c_m_t*s_1;
-        const real d0_c_m_t_6 = c_1*d0_c_m_t;
-        const real d0_c_m_t_7 = d0_c_m_t_2*s_1;
-        const real d0_c_m_t_8 = c_1*d0_c_m_t_2;
-        const real d0_c_m_t_9 = _x_31*s_1;
-        const real d0_c_m_t_10 = _x_31*c_1;
-        const real _x_32 = d0_c_m_t_5*upu_base_frame_xx + d0_c_m_t_7*upu_base_frame_xy -
-            d0_c_m_t_9*upu_base_frame_xz;
-        const real _y_32 = d0_c_m_t_5*upu_base_frame_yx + d0_c_m_t_7*upu_base_frame_yy -
-            d0_c_m_t_9*upu_base_frame_yz;
-        const real _x_33 = d0_c_m_t_6*upu_base_frame_xx + d0_c_m_t_8*upu_base_frame_xy -
-            d0_c_m_t_10*upu_base_frame_xz;
-        const real _y_33 = d0_c_m_t_6*upu_base_frame_yx + d0_c_m_t_8*upu_base_frame_yy -
-            d0_c_m_t_10*upu_base_frame_yz;
-        const real _x_34 = _y_31*upu_base_frame_xz - d0_c_m_t_3*upu_base_frame_xx -
-            d0_c_m_t_4*upu_base_frame_xy;
-        const real _y_34 = _y_31*upu_base_frame_yz - d0_c_m_t_3*upu_base_frame_yx -
-            d0_c_m_t_4*upu_base_frame_yy;
-        const real _z_11 = upu_base_frame_zx*(d0_c_m_t_5*upu_base_frame_zx +
-            d0_c_m_t_7*upu_base_frame_zy - d0_c_m_t_9*upu_base_frame_zz) +
-            upu_base_frame_zy*(d0_c_m_t_6*upu_base_frame_zx + d0_c_m_t_8*upu_base_frame_zy -
-            d0_c_m_t_10*upu_base_frame_zz) + upu_base_frame_zz*(_y_31*upu_base_frame_zz -
-            d0_c_m_t_3*upu_base_frame_zx - d0_c_m_t_4*upu_base_frame_zy);
+        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
+        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
+            J_group_2_yz*c_2*inv_root_2);
+        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y;
+        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y;
+        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
+        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
+        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
+        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
+        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
+        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
+        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
+        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + _x_13*q_in_base_z + _y_27*q_in_base_z -
-            M_ta_t_9*q_in_base_y - _x_14*q_in_base_y - _x_32*upu_base_frame_xx -
-            _x_33*upu_base_frame_xy - _x_34*upu_base_frame_xz - _z_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + _x_26*q_in_base_z + _x_32*upu_base_frame_yx +
-            _x_33*upu_base_frame_yy + _x_34*upu_base_frame_yz + _y_15*q_in_base_y -
-            M_ta_t_10*q_in_base_y - _y_14*q_in_base_z - _z_10*q_in_base_x;
-        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + _x_26*q_in_base_y +
-            _z_5*q_in_base_z - _x_32*upu_base_frame_zx - _x_33*upu_base_frame_zy -
-            _x_34*upu_base_frame_zz - _y_27*q_in_base_x - _z_6*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_10*q_in_base_x + _x_27*q_in_base_z + _y_13*q_in_base_z +
-            _y_32*upu_base_frame_yx + _y_33*upu_base_frame_yy + _y_34*upu_base_frame_yz -
-            M_ta_t_3*q_in_base_z - _y_15*q_in_base_x - q_in_base_x*(_y_24*upu_base_frame_zx +
-            _y_25*upu_base_frame_zy + _y_26*upu_base_frame_zz);
+        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
+            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
+            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
+        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
+            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
+            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
+        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
+            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
+            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
+        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
+            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
+            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
         const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            _y_32*upu_base_frame_zx + _y_33*upu_base_frame_zy + _y_34*upu_base_frame_zz +
-            _z_4*q_in_base_z + q_in_base_x*(_y_24*upu_base_frame_yx + _y_25*upu_base_frame_yy +
-            _y_26*upu_base_frame_yz) - _x_27*q_in_base_y - _z_6*q_in_base_x;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + _z_4*q_in_base_y +
-            q_in_base_y*(_z_7*upu_base_frame_xx + _z_8*upu_base_frame_xy + _z_9*upu_base_frame_xz)
-            - _z_11 - M_ta_t_8*q_in_base_x - _z_5*q_in_base_x -
-            q_in_base_x*(_z_7*upu_base_frame_yx + _z_8*upu_base_frame_yy +
-            _z_9*upu_base_frame_yz);
+            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
+            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
+        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
+            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
+            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
+            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -1129,47 +1034,49 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upu-V17) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y +
+            n_m1_in_base_z*omega_z;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
+            eta_1*n_c1_z);
+        /* (upu-V21) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
         const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (upu-A8) rate of moment direction 1 */
         const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
             end_p1_r3_x*omega_tip_z;
         const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
             end_p1_r3_y*omega_tip_z;
         /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
         /* (upu-A9) bias of the angular acceleration along moment direction 1 */
         const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
         const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
             omega_tip_y);
         const real nu_1 = -nu_1_t - nu_1_t_2;
         /* (upu-V23) centripetal tensor of link 2 */
         const real W_2_t = omega_1_t*omega_1_t;
         const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
+        const real W_2_t_3 = qd_1_t*qd_1_t;
         const real W_2_xy = omega_1_t*omega_1_t_2;
         /* (upu-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t_2;
+        const real bias_t_2 = bias_t*qd_1_t;
         const real bias_t_3 = bias_t*omega_1_t_2;
         const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
         /* (upu-A1) centripetal acceleration of the connection point */
@@ -1180,18 +1087,18 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
            the joint accelerations */
         const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
             axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
-        /* (upu-A11) remainder without the acceleration in: acceleration of joint 1 */
+        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
             + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
         const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4;
-        /* (upu-A19) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (upu-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1);
+        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
+        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
+        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
+        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upu-A25) acceleration tensor of link 2 */
+        /* (upu-A26) acceleration tensor of link 2 */
         const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
@@ -1231,42 +1138,39 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
            the leg's inertia and weight along all freedoms */
         const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
         const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
-        /* (upu-N55) velocity and gravity terms of the leg force */
+        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z;
+        /* (upu-N59) velocity and gravity terms of the leg force */
         const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
             G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
         const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
             G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
         const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
             G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
-        /* (upu-N45) remainder without the acceleration in: moment at the connection point that balances
+        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_t = N_2_o_r0_y*o_1_x;
-        const real G_m_o_t_2 = N_2_o_r0_y*o_1_y;
+        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
+        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
         /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
-            G_m_o_t*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
-            G_m_o_t*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
-            G_m_o_t*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
+        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
+            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
+        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
+            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
+        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
+            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
         /* (M8) moment of the column's unit force about the platform origin */
         const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
         const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
         const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
+        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
+        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
+        const real Hk_a_1_x = n_m1_in_base_x + n_c1_t_3*q_in_base_z - n_c1_t_4*q_in_base_y;
+        const real Hk_a_1_y = n_m1_in_base_y + n_c1_t_4*q_in_base_x - n_c1_t_2*q_in_base_z;
+        const real Hk_a_1_z = n_m1_in_base_z + n_c1_t_2*q_in_base_y - n_c1_t_3*q_in_base_x;
         /* (M11) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
+        const real gamma_c1 = nu_1 - n_c1_z*rel_o_z;
         o->sum[0][k] = Q_t_12;  /* total_upu_xx */
         o->sum[1][k] = Q_t_13;  /* total_upu_xy */
         o->sum[2][k] = Q_t_14;  /* total_upu_xz */
@@ -1300,16 +1204,16 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->entry[3][k] = H_a_3_t;
         o->entry[4][k] = H_a_3_t_2;
         o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c_t;
-        o->entry[7][k] = -n_c_t_2;
-        o->entry[8][k] = -n_c_t_3;
+        o->entry[6][k] = -n_c1_t_2;
+        o->entry[7][k] = -n_c1_t_3;
+        o->entry[8][k] = -n_c1_t_4;
         o->entry[9][k] = Hk_a_1_x;
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
         o->entry[12][k] = gamma_c1;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -1395,9 +1299,9 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real M_ta_zy = total_upu_zy - h_star_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
-        const real M_aa_xy = J_star_t_11 - total_upu_xy_3;
+        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
         const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
-        const real M_aa_yy = J_star_t_14 - total_upu_yy_3;
+        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
         const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
         const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
         /* (M5) translational part of Z */
@@ -1499,7 +1403,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 18, w, code, H);
 }
 
-/* ---- M: 1650 mul, 1065 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1634,6 +1538,7 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -1655,7 +1560,6 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -1711,13 +1615,12 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -1735,10 +1638,10 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real w_1_t_4 = inv_w_1_t_25*n_c1_z;
+        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
         const real d_alpha_1_t = inv_w_1_t_25*s_2;
         const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
         /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
@@ -1750,9 +1653,6 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
         /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d_Gamma_1_t = c_2*h_3_y;
-        const real d_Gamma_1_y = s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
-            J_group_2_yz*c_2*inv_root_2;
         const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
             d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
             d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
@@ -1761,7 +1661,7 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
            leg's inertia and weight along all freedoms */
         const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
             d_alpha_1_t*h_3_y*root_2);
-        /* (upu-N50) inertia of the leg at the connection point, without the mass gathered there */
+        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
         const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
             h_3_x*inv_root_2)) - upu_link3_mass;
         const real Q_t_2 = R(0.5)*Q_t;
@@ -1788,42 +1688,40 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
             Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
         const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
         const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
+        /* (upu-V14) moment part of reciprocal wrench 1 */
         const real o_1_x = end_p1_r3_y*w_1_t_4;
         const real o_1_y = end_p1_r3_x*w_1_t_4;
-        const real o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2);
-        const real o_1_z = n_m1_r0_y*w_1_t_4;
-        /* (upu-A17) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d0_alpha_1_t = o_1_y_2*s_2;
-        const real d0_alpha_1_t_2 = c_2*o_1_y_2;
-        const real d0_alpha_1_t_3 = o_1_z*s_2;
-        const real d0_alpha_1_t_4 = c_2*o_1_z;
-        const real _x = d0_alpha_1_t_3*s_2 - c_2*d0_alpha_1_t;
-        const real _y = -c_2*d0_alpha_1_t_3 - d0_alpha_1_t*s_2;
-        const real _x_2 = c_2*d0_alpha_1_t_2 - d0_alpha_1_t_4*s_2;
-        const real _y_2 = c_2*d0_alpha_1_t_4 + d0_alpha_1_t_2*s_2;
+        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real d0_alpha_1_xx = o_1_x*s_2;
+        const real d0_alpha_1_xy = o_1_y*s_2;
+        const real d0_alpha_1_yx = c_2*o_1_x;
+        const real d0_alpha_1_yy = c_2*o_1_y;
         /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
            less gravity */
-        const real d0_acc_3_t = _x_2*root_2;
-        const real d0_acc_3_t_2 = _y_2*root_2;
+        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
+        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
         /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
            reference point */
-        const real d0_phi_3_t = _x_2*h_3_y;
-        const real d0_phi_3_t_2 = _y_2*h_3_y;
+        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
+        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
         /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
            and weight */
-        const real d0_Gamma_1_x = s_2*(J_group_2_xx*_x + J_group_2_xy*_x_2 + d0_acc_3_t*h_3_z) -
-            c_2*(J_group_2_xy*_x + J_group_2_yy*_x_2 + d0_acc_3_t*h_3_x - root_2*(-_x*h_3_z -
-            _x_2*h_3_x - d0_acc_3_t*upu_link3_mass));
-        const real d0_Gamma_1_y = s_2*(J_group_2_xx*_y + J_group_2_xy*_y_2 + d0_acc_3_t_2*h_3_z) -
-            c_2*(J_group_2_xy*_y + J_group_2_yy*_y_2 + d0_acc_3_t_2*h_3_x - root_2*(-_y*h_3_z -
-            _y_2*h_3_x - d0_acc_3_t_2*upu_link3_mass));
+        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
+            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
+            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
+            d0_alpha_1_yx*h_3_x));
+        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
+            d0_alpha_1_xy*h_3_z));
         /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
            leg's inertia and weight along all freedoms */
         const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
         const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
-        const real d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2);
-        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2);
+        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
+            - J_group_2_xz*d0_alpha_1_xx);
+        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
+            - d0_alpha_1_xy*h_3_y*root_2);
         /* (M2) coupling block of M */
         const real M_ta_t = Q_t_13*q_in_base_z;
         const real M_ta_t_2 = Q_t_14*q_in_base_y;
@@ -1836,194 +1734,105 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
         const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
         const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upu-N47) coefficient of the acceleration in: leg force on the platform without actuation and
+        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
            without the mass at the connection point */
-        const real _x_3 = c_2*d0_phi_3_t + d0_G_t_3*s_2;
-        const real _y_3 = c_2*d0_G_t_3 - d0_phi_3_t*s_2;
-        const real _x_4 = c_2*d0_phi_3_t_2 + d0_G_t_4*s_2;
-        const real _y_4 = c_2*d0_G_t_4 - d0_phi_3_t_2*s_2;
-        const real _x_5 = -_x_3*c_2 - _x_4*s_2;
-        const real _y_5 = _x_3*s_2 - _x_4*c_2;
-        const real _x_6 = -_y_3*c_2 - _y_4*s_2;
-        const real _y_6 = _y_3*s_2 - _y_4*c_2;
-        const real _x_7 = c_2*d0_G_t + d0_G_t_2*s_2;
-        const real _y_7 = c_2*d0_G_t_2 - d0_G_t*s_2;
-        const real _x_8 = -_x_5*s_1 - _x_7*c_1;
-        const real _y_8 = _x_7*s_1 - _x_5*c_1;
-        const real _x_9 = -_y_5*s_1 - _y_7*c_1;
-        const real _y_9 = _y_7*s_1 - _y_5*c_1;
-        const real d0_c_t = _x_8*s_1;
-        const real d0_c_t_2 = _x_8*c_1;
-        const real d0_c_t_3 = _y_8*s_1;
-        const real d0_c_t_4 = _y_8*c_1;
-        const real d0_c_t_5 = _x_6*s_1;
-        const real d0_c_t_6 = _x_6*c_1;
-        const real _x_10 = -d0_c_t*upu_base_frame_xx - d0_c_t_3*upu_base_frame_xy -
-            d0_c_t_5*upu_base_frame_xz;
-        const real _y_10 = -d0_c_t*upu_base_frame_yx - d0_c_t_3*upu_base_frame_yy -
-            d0_c_t_5*upu_base_frame_yz;
-        const real _z = -d0_c_t*upu_base_frame_zx - d0_c_t_3*upu_base_frame_zy -
-            d0_c_t_5*upu_base_frame_zz;
-        const real _x_11 = -d0_c_t_2*upu_base_frame_xx - d0_c_t_4*upu_base_frame_xy -
-            d0_c_t_6*upu_base_frame_xz;
-        const real _y_11 = -d0_c_t_2*upu_base_frame_yx - d0_c_t_4*upu_base_frame_yy -
-            d0_c_t_6*upu_base_frame_yz;
-        const real _z_2 = -d0_c_t_2*upu_base_frame_zx - d0_c_t_4*upu_base_frame_zy -
-            d0_c_t_6*upu_base_frame_zz;
-        const real _x_12 = _x_9*upu_base_frame_xx + _y_6*upu_base_frame_xz +
-            _y_9*upu_base_frame_xy;
-        const real _y_12 = _x_9*upu_base_frame_yx + _y_6*upu_base_frame_yz +
-            _y_9*upu_base_frame_yy;
-        const real _z_3 = _x_9*upu_base_frame_zx + _y_6*upu_base_frame_zz +
-            _y_9*upu_base_frame_zy;
-        const real _y_13 = _x_10*upu_base_frame_yx + _x_11*upu_base_frame_yy +
-            _x_12*upu_base_frame_yz;
-        const real _z_4 = _x_10*upu_base_frame_zx + _x_11*upu_base_frame_zy +
-            _x_12*upu_base_frame_zz;
-        const real _x_13 = _y_10*upu_base_frame_xx + _y_11*upu_base_frame_xy +
-            _y_12*upu_base_frame_xz;
-        const real _y_14 = _y_10*upu_base_frame_yx + _y_11*upu_base_frame_yy +
-            _y_12*upu_base_frame_yz;
-        const real _z_5 = _y_10*upu_base_frame_zx + _y_11*upu_base_frame_zy +
-            _y_12*upu_base_frame_zz;
-        const real _x_14 = _z*upu_base_frame_xx + _z_2*upu_base_frame_xy + _z_3*upu_base_frame_xz;
-        const real _y_15 = _z*upu_base_frame_yx + _z_2*upu_base_frame_yy + _z_3*upu_base_frame_yz;
-        const real _z_6 = _z*upu_base_frame_zx + _z_2*upu_base_frame_zy + _z_3*upu_base_frame_zz;
+        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
+        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
+        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
+        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
+        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
+        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
+        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
+        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
+        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
+        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
+        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
+        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
+        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
+        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
         /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t + _x_10*upu_base_frame_xx + _x_11*upu_base_frame_xy +
-            _x_12*upu_base_frame_xz - M_ta_t_2;
-        const real M_ta_t_13 = M_ta_t_3 - _y_13;
-        const real M_ta_t_14 = M_ta_t_4 + _z_4;
-        const real M_ta_t_15 = M_ta_t_5 + _x_13;
-        const real M_ta_t_16 = M_ta_t_7 - _y_14;
-        const real M_ta_t_17 = M_ta_t_8 + _z_5;
-        const real M_ta_t_18 = M_ta_t_9 + _x_14;
-        const real M_ta_t_19 = M_ta_t_10 - _y_15;
-        const real M_ta_t_20 = M_ta_t_11 - _z_6;
-        /* (upu-N43) coefficient of the acceleration in: moment at the connection point that balances the
+        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
+        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
+        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
+        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
+        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
+        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
+        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
+        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
+        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
            leg's inertia and weight along all freedoms */
-        const real d0_G_m_t = d0_Gamma_1_x*o_1_x;
-        const real d0_G_m_t_2 = d0_Gamma_1_y*o_1_x;
-        const real d0_G_m_t_3 = d0_Gamma_1_x*o_1_y;
-        const real d0_G_m_t_4 = d0_Gamma_1_y*o_1_y;
-        /* (upu-N44) coefficient of the acceleration in: moment at the connection point that balances the
+        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
+        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
            leg's inertia and weight along all freedoms */
-        const real d_G_m_t = d_Gamma_1_t*o_1_x;
-        const real d_G_m_t_2 = d_Gamma_1_y*o_1_x;
-        const real d_G_m_t_3 = d_Gamma_1_z*o_1_x;
-        const real d_G_m_t_4 = d_Gamma_1_t*o_1_y;
-        const real d_G_m_t_5 = d_Gamma_1_y*o_1_y;
-        const real d_G_m_t_6 = d_Gamma_1_z*o_1_y;
-        /* (upu-N53) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real _x_15 = c_2*d_G_m_t - d_G_m_t_4*s_2;
-        const real _y_16 = -c_2*d_G_m_t_4 - d_G_m_t*s_2;
-        const real _x_16 = d_G_m_t_5*s_2 - c_2*d_G_m_t_2;
-        const real _y_17 = c_2*d_G_m_t_5 + d_G_m_t_2*s_2;
-        const real _x_17 = d_G_m_t_6*s_2 - c_2*d_G_m_t_3;
-        const real _y_18 = c_2*d_G_m_t_6 + d_G_m_t_3*s_2;
-        const real _x_18 = -_x_15*c_2 - _x_16*s_2;
-        const real _y_19 = _x_15*s_2 - _x_16*c_2;
-        const real _x_19 = -_y_16*c_2 - _y_17*s_2;
-        const real _y_20 = _y_16*s_2 - _y_17*c_2;
-        const real d_c_m_t = _x_17*s_1;
-        const real d_c_m_t_2 = _x_17*c_1;
-        const real d_c_m_t_3 = _x_18*s_1;
-        const real d_c_m_t_4 = _x_18*c_1;
-        const real d_c_m_t_5 = _y_19*s_1;
-        const real d_c_m_t_6 = _y_19*c_1;
-        const real _x_20 = c_1*d_c_m_t + d_c_m_t_3*s_1;
-        const real _y_21 = c_1*d_c_m_t_3 - d_c_m_t*s_1;
-        const real _x_21 = c_1*d_c_m_t_2 + d_c_m_t_4*s_1;
-        const real _y_22 = c_1*d_c_m_t_4 - d_c_m_t_2*s_1;
-        const real _x_22 = -_x_19*s_1 - _y_18*c_1;
-        const real _y_23 = _y_18*s_1 - _x_19*c_1;
-        const real _x_23 = _x_20*upu_base_frame_xx + _x_21*upu_base_frame_xy +
-            _x_22*upu_base_frame_xz;
-        const real _y_24 = _x_20*upu_base_frame_yx + _x_21*upu_base_frame_yy +
-            _x_22*upu_base_frame_yz;
-        const real _z_7 = _x_20*upu_base_frame_zx + _x_21*upu_base_frame_zy +
-            _x_22*upu_base_frame_zz;
-        const real _x_24 = _y_21*upu_base_frame_xx + _y_22*upu_base_frame_xy +
-            _y_23*upu_base_frame_xz;
-        const real _y_25 = _y_21*upu_base_frame_yx + _y_22*upu_base_frame_yy +
-            _y_23*upu_base_frame_yz;
-        const real _z_8 = _y_21*upu_base_frame_zx + _y_22*upu_base_frame_zy +
-            _y_23*upu_base_frame_zz;
-        const real _x_25 = _y_20*upu_base_frame_xz - d_c_m_t_5*upu_base_frame_xx -
-            d_c_m_t_6*upu_base_frame_xy;
-        const real _y_26 = _y_20*upu_base_frame_yz - d_c_m_t_5*upu_base_frame_yx -
-            d_c_m_t_6*upu_base_frame_yy;
-        const real _z_9 = _y_20*upu_base_frame_zz - d_c_m_t_5*upu_base_frame_zx -
-            d_c_m_t_6*upu_base_frame_zy;
-        const real _x_26 = _x_23*upu_base_frame_xx + _x_24*upu_base_frame_xy +
-            _x_25*upu_base_frame_xz;
-        const real _y_27 = _x_23*upu_base_frame_yx + _x_24*upu_base_frame_yy +
-            _x_25*upu_base_frame_yz;
-        const real _z_10 = _x_23*upu_base_frame_zx + _x_24*upu_base_frame_zy +
-            _x_25*upu_base_frame_zz;
-        const real _x_27 = _y_24*upu_base_frame_xx + _y_25*upu_base_frame_xy +
-            _y_26*upu_base_frame_xz;
-        /* (upu-N52) coefficient of the acceleration in: moment of the leg on the platform without
-           actuation */
-        const real _x_28 = d0_G_m_t_3*s_2 - c_2*d0_G_m_t;
-        const real _y_28 = c_2*d0_G_m_t_3 + d0_G_m_t*s_2;
-        const real _x_29 = d0_G_m_t_4*s_2 - c_2*d0_G_m_t_2;
-        const real _y_29 = c_2*d0_G_m_t_4 + d0_G_m_t_2*s_2;
-        const real _x_30 = -_x_28*c_2 - _x_29*s_2;
-        const real _y_30 = _x_28*s_2 - _x_29*c_2;
-        const real _x_31 = -_y_28*c_2 - _y_29*s_2;
-        const real _y_31 = _y_28*s_2 - _y_29*c_2;
-        const real d0_c_m_t = _x_30*s_1;
-        const real d0_c_m_t_2 = _x_30*c_1;
-        const real d0_c_m_t_3 = _y_30*s_1;
-        const real d0_c_m_t_4 = _y_30*c_1;
-        const real d0_c_m_t_5 = d0_c_m_t*s_1;
-        const real d0_c_m_t_6 = c_1*d0_c_m_t;
-        const real d0_c_m_t_7 = d0_c_m_t_2*s_1;
-        const real d0_c_m_t_8 = c_1*d0_c_m_t_2;
-        const real d0_c_m_t_9 = _x_31*s_1;
-        const real d0_c_m_t_10 = _x_31*c_1;
-        const real _x_32 = d0_c_m_t_5*upu_base_frame_xx + d0_c_m_t_7*upu_base_frame_xy -
-            d0_c_m_t_9*upu_base_frame_xz;
-        const real _y_32 = d0_c_m_t_5*upu_base_frame_yx + d0_c_m_t_7*upu_base_frame_yy -
-            d0_c_m_t_9*upu_base_frame_yz;
-        const real _x_33 = d0_c_m_t_6*upu_base_frame_xx + d0_c_m_t_8*upu_base_frame_xy -
-            d0_c_m_t_10*upu_base_frame_xz;
-        const real _y_33 = d0_c_m_t_6*upu_base_frame_yx + d0_c_m_t_8*upu_base_frame_yy -
-            d0_c_m_t_10*upu_base_frame_yz;
-        const real _x_34 = _y_31*upu_base_frame_xz - d0_c_m_t_3*upu_base_frame_xx -
-            d0_c_m_t_4*upu_base_frame_xy;
-        const real _y_34 = _y_31*upu_base_frame_yz - d0_c_m_t_3*upu_base_frame_yx -
-            d0_c_m_t_4*upu_base_frame_yy;
-        const real _z_11 = upu_base_frame_zx*(d0_c_m_t_5*upu_base_frame_zx +
-            d0_c_m_t_7*upu_base_frame_zy - d0_c_m_t_9*upu_base_frame_zz) +
-            upu_base_frame_zy*(d0_c_m_t_6*upu_base_frame_zx + d0_c_m_t_8*upu_base_frame_zy -
-            d0_c_m_t_10*upu_base_frame_zz) + upu_base_frame_zz*(_y_31*upu_base_frame_zz -
-            d0_c_m_t_3*upu_base_frame_zx - d0_c_m_t_4*upu_base_frame_zy);
+        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
+        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
+            J_group_2_yz*c_2*inv_root_2);
+        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y;
+        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y;
+        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
+        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
+        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
+        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
+        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
+        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
+        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
+        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
         /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + _x_13*q_in_base_z + _y_27*q_in_base_z -
-            M_ta_t_9*q_in_base_y - _x_14*q_in_base_y - _x_32*upu_base_frame_xx -
-            _x_33*upu_base_frame_xy - _x_34*upu_base_frame_xz - _z_10*q_in_base_y;
-        const real M_aa_t_2 = M_ta_t_7*q_in_base_z + _x_26*q_in_base_z + _x_32*upu_base_frame_yx +
-            _x_33*upu_base_frame_yy + _x_34*upu_base_frame_yz + _y_15*q_in_base_y -
-            M_ta_t_10*q_in_base_y - _y_14*q_in_base_z - _z_10*q_in_base_x;
-        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + _x_26*q_in_base_y +
-            _z_5*q_in_base_z - _x_32*upu_base_frame_zx - _x_33*upu_base_frame_zy -
-            _x_34*upu_base_frame_zz - _y_27*q_in_base_x - _z_6*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_10*q_in_base_x + _x_27*q_in_base_z + _y_13*q_in_base_z +
-            _y_32*upu_base_frame_yx + _y_33*upu_base_frame_yy + _y_34*upu_base_frame_yz -
-            M_ta_t_3*q_in_base_z - _y_15*q_in_base_x - q_in_base_x*(_y_24*upu_base_frame_zx +
-            _y_25*upu_base_frame_zy + _y_26*upu_base_frame_zz);
+        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
+            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
+            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
+        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
+            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
+            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
+        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
+            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
+            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
+        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
+            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
+            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
         const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            _y_32*upu_base_frame_zx + _y_33*upu_base_frame_zy + _y_34*upu_base_frame_zz +
-            _z_4*q_in_base_z + q_in_base_x*(_y_24*upu_base_frame_yx + _y_25*upu_base_frame_yy +
-            _y_26*upu_base_frame_yz) - _x_27*q_in_base_y - _z_6*q_in_base_x;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + _z_4*q_in_base_y +
-            q_in_base_y*(_z_7*upu_base_frame_xx + _z_8*upu_base_frame_xy + _z_9*upu_base_frame_xz)
-            - _z_11 - M_ta_t_8*q_in_base_x - _z_5*q_in_base_x -
-            q_in_base_x*(_z_7*upu_base_frame_yx + _z_8*upu_base_frame_yy +
-            _z_9*upu_base_frame_yz);
+            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
+            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
+        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
+            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
+            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
+            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
         o->sum[0][k] = Q_t_12;  /* total_upu_xx */
         o->sum[1][k] = Q_t_13;  /* total_upu_xy */
         o->sum[2][k] = Q_t_14;  /* total_upu_xz */
@@ -2047,7 +1856,7 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[20][k] = M_aa_t_6;  /* total_upu_zz_3 */
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -2106,9 +1915,9 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real M_ta_zy = total_upu_zy - h_star_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
-        const real M_aa_xy = J_star_t_11 - total_upu_xy_3;
+        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
         const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
-        const real M_aa_yy = J_star_t_14 - total_upu_yy_3;
+        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
         const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
         const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
         M[0*w + k] = M_tt_xx;
@@ -2189,7 +1998,7 @@ INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code
     deliver(M_of, 36, w, code, M);
 }
 
-/* ---- Z: 828 mul, 606 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- Z: 849 mul, 618 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -2366,6 +2175,7 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -2387,7 +2197,6 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -2444,13 +2253,12 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -2468,12 +2276,8 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -2481,47 +2285,51 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upu-V17) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y);
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
+            eta_1*n_c1_z);
+        /* (upu-V21) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
         const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (upu-A8) rate of moment direction 1 */
         const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
             end_p1_r3_x*omega_tip_z;
         const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
             end_p1_r3_y*omega_tip_z;
         /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
         /* (upu-A9) bias of the angular acceleration along moment direction 1 */
         const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
         const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
             omega_tip_y);
         const real nu_1 = -nu_1_t - nu_1_t_2;
         /* (upu-V23) centripetal tensor of link 2 */
         const real W_2_t = omega_1_t*omega_1_t;
         const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
+        const real W_2_t_3 = qd_1_t*qd_1_t;
         const real W_2_xy = omega_1_t*omega_1_t_2;
         /* (upu-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t_2;
+        const real bias_t_2 = bias_t*qd_1_t;
         const real bias_t_3 = bias_t*omega_1_t_2;
         const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
         /* (upu-A1) centripetal acceleration of the connection point */
@@ -2532,18 +2340,18 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
            the joint accelerations */
         const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
             axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
-        /* (upu-A11) remainder without the acceleration in: acceleration of joint 1 */
+        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
         const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
             + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
         const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4;
-        /* (upu-A19) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o;
-        /* (upu-A23) remainder without the acceleration in: angular acceleration of link 2 */
+        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1);
+        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
+        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
+        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
+        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upu-A25) acceleration tensor of link 2 */
+        /* (upu-A26) acceleration tensor of link 2 */
         const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
@@ -2583,24 +2391,25 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
            the leg's inertia and weight along all freedoms */
         const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
         const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
-        /* (upu-N55) velocity and gravity terms of the leg force */
+        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z;
+        /* (upu-N59) velocity and gravity terms of the leg force */
         const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
             G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
         const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
             G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
         const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
             G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
-        /* (upu-N45) remainder without the acceleration in: moment at the connection point that balances
+        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
            the leg's inertia and weight along all freedoms */
-        const real G_m_o_t = N_2_o_r0_y*o_1_x;
-        const real G_m_o_t_2 = N_2_o_r0_y*o_1_y;
+        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
+        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
         /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
-            G_m_o_t*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
-            G_m_o_t*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
-            G_m_o_t*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
+        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
+            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
+        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
+            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
+        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
+            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
         o->sum[0][k] = U_in_base_x;  /* total_upu_x */
         o->sum[1][k] = U_in_base_y;  /* total_upu_y */
         o->sum[2][k] = U_in_base_z;  /* total_upu_z */
@@ -2609,7 +2418,7 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[5][k] = Z_a_t_3;  /* total_upu_z_2 */
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -2826,7 +2635,7 @@ INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_value
         const real c_1 = inv_root_1*py_1;
         /* (upu-K7) sine of the angle of joint 1 from its reference direction */
         const real s_1 = inv_root_1*px_1;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -2986,6 +2795,7 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         const real R_zz = s->R_zz[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -3006,7 +2816,6 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -3062,11 +2871,10 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real volume_c_t = root_1*root_2;
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -3078,30 +2886,29 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
             upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
         const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
             upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
+        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
+        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z -
             end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c1_t_4*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x -
             end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c1_t_2*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y -
             end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x;
-        o->entry[0][k] = -n_c_t;
-        o->entry[1][k] = -n_c_t_2;
-        o->entry[2][k] = -n_c_t_3;
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c1_t_3*q_in_base_x;
+        o->entry[0][k] = -n_c1_t_2;
+        o->entry[1][k] = -n_c1_t_3;
+        o->entry[2][k] = -n_c1_t_4;
         o->entry[3][k] = Hk_a_1_x;
         o->entry[4][k] = Hk_a_1_y;
         o->entry[5][k] = Hk_a_1_z;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_);
     }
 }
@@ -3150,7 +2957,7 @@ INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk, int *co
     deliver(Hk_of, 18, w, code, Hk);
 }
 
-/* ---- constraint_bias: 483 mul, 306 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -3259,6 +3066,7 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real omega_z = s->omega_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -3279,7 +3087,6 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -3336,13 +3143,12 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -3360,9 +3166,7 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3370,36 +3174,40 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upu-V17) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y);
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = (S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
+            eta_1*n_c1_z)/w_1_t_3;
+        /* (upu-V21) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
         const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = end_p1_r3_y*omega_tip_x*w_1_t_4 - end_p1_r3_x*omega_tip_y*w_1_t_4;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (upu-A8) rate of moment direction 1 */
         const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
             end_p1_r3_x*omega_tip_z;
         const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
             end_p1_r3_y*omega_tip_z;
         /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
+        const real zeta_2_y = omega_1_t*qd_1_t;
         /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t_2 - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
         const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
             omega_tip_y);
         const real nu_1 = -nu_1_t - nu_1_t_2;
         /* (upu-A5) acceleration of the connection point at zero joint accelerations */
@@ -3410,11 +3218,11 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
             axis_z_upu_axes2_in_base_y*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
             axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z;
         /* (M11) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
+        const real gamma_c1 = nu_1 - n_c1_z*rel_o_z;
         o->entry[0][k] = gamma_c1;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -3678,6 +3486,7 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -3699,7 +3508,6 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -3756,13 +3564,12 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -3780,12 +3587,8 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -3793,49 +3596,23 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        /* (upu-A8) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
         const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
         /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
+        const real W_2_t = qd_1_t*qd_1_t;
         /* (upu-A5) acceleration of the connection point at zero joint accelerations */
         const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t_2;
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
+        const real bias_t_2 = bias_t*qd_1_t;
         /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
            less gravity */
         const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
@@ -3846,18 +3623,43 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
         const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
         const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
+        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
+        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
         /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z -
+            axis_x_upu_axes2_x*end_p1_r3_y - n_c1_t_4*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x -
+            axis_x_upu_axes2_y*end_p1_r3_y - n_c1_t_2*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y -
+            axis_x_upu_axes2_z*end_p1_r3_y - n_c1_t_3*q_in_base_x;
+        /* (upu-V18) rate of joint 1 */
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c1_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
+        /* (upu-V21) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
+            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real etad_1 = nu_1 - etad_1_t;
         /* (upu-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -3866,48 +3668,52 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-V23) centripetal tensor of link 2 */
+        const real W_2_t_2 = omega_1_t*omega_1_t;
+        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t_3 = bias_t*omega_1_t_2;
+        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
         /* (upu-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
             S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A10) acceleration of joint 1 */
-        const real qdd_1_t = o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real qdd_1_t_2 = S_ddot_x*axis_y_upu_axes2_in_base_x +
+        /* (upu-A11) acceleration of joint 1 */
+        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
             S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
-        const real qdd_1_t_3 = inv_root_2*qdd_1_t_2;
-        const real qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t;
-        /* (upu-A16) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1;
-        /* (upu-A20) angular acceleration of link 2 */
+        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
+        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z);
+        /* (upu-A17) angular acceleration of link 1 */
+        const real alpha_1_t = qdd_1_t_3*s_2;
+        const real alpha_1_t_2 = c_2*qdd_1_t_3;
+        /* (upu-A21) angular acceleration of link 2 */
         const real alpha_2_x = alpha_1_t - zeta_2_x;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upu-A24) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t_3;
+        /* (upu-A25) acceleration tensor of link 2 */
+        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
         /* (upu-N3) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
             S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
-        const real acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y;
+        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
         const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
         /* (upu-N11) inertia force of link 3 less its weight */
         const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
-            h_3_x*(W_2_t_2 + W_2_t_3);
-        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_3 + h_3_z*(W_2_t + W_2_t_3) -
+            h_3_x*(W_2_t + W_2_t_3);
+        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
             alpha_1_t*h_3_y;
-        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t +
-            W_2_t_2);
+        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
+            W_2_t_3);
         /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_3 + J_group_2_yz*(W_2_t_2 -
-            W_2_t_3) + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
+        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
+            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
             acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t_3 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
+        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
+            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
+            acc_3_z*h_3_x - g_r3_x*h_2_y;
+        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
+            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
             J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
         /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
@@ -3917,7 +3723,8 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
            freedoms */
         const real G_t = f_3_y + inv_root_2*mu_2_z;
         const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
-        /* (upu-N46) leg force on the platform without actuation and without the mass at the connection
+        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z;
+        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
             G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
@@ -3925,17 +3732,17 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
             G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
         const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
             G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
-        /* (upu-N42) moment at the connection point that balances the leg's inertia and weight along all
+        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_t = N_2_r0_y*o_1_x;
-        const real G_m_t_2 = N_2_r0_y*o_1_y;
+        const real G_m_x = G_t_3*end_p1_r3_y;
+        const real G_m_y = G_t_3*end_p1_r3_x;
         /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = G_m_t*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y -
-            G_m_t_2*axis_y_upu_axes2_in_base_x - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = G_m_t*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z -
-            G_m_t_2*axis_y_upu_axes2_in_base_y - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = G_m_t*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x -
-            G_m_t_2*axis_y_upu_axes2_in_base_z - c_in_base_x*q_in_base_y;
+        const real R_a_t = G_m_x*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y -
+            G_m_y*axis_y_upu_axes2_in_base_x - c_in_base_y*q_in_base_z;
+        const real R_a_t_2 = G_m_x*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z -
+            G_m_y*axis_y_upu_axes2_in_base_y - c_in_base_z*q_in_base_x;
+        const real R_a_t_3 = G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x -
+            G_m_y*axis_y_upu_axes2_in_base_z - c_in_base_x*q_in_base_y;
         o->sum[0][k] = c_in_base_x;  /* total_upu_x */
         o->sum[1][k] = c_in_base_y;  /* total_upu_y */
         o->sum[2][k] = c_in_base_z;  /* total_upu_z */
@@ -3948,15 +3755,15 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->entry[3][k] = H_a_3_t;
         o->entry[4][k] = H_a_3_t_2;
         o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c_t;
-        o->entry[7][k] = -n_c_t_2;
-        o->entry[8][k] = -n_c_t_3;
+        o->entry[6][k] = -n_c1_t_2;
+        o->entry[7][k] = -n_c1_t_3;
+        o->entry[8][k] = -n_c1_t_4;
         o->entry[9][k] = Hk_a_1_x;
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -4219,7 +4026,7 @@ INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, r
     deliver(q_of, 9, w, code, q);
 }
 
-/* ---- joint_rates: 375 mul, 237 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_rates: 366 mul, 237 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4328,6 +4135,7 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real omega_z = s->omega_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -4348,7 +4156,6 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -4404,13 +4211,12 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -4428,32 +4234,28 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
         const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = end_p1_r3_y*w_1_t_4*(axis_x_upu_axes2_x*omega_x +
-            axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
-            end_p1_r3_x*w_1_t_4*(axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z);
-        /* (upu-V1) velocity of the connection point */
         const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
             S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
             S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
-        o->entry[0][k] = qd_1;
-        o->entry[1][k] = qd_1_t_2;
+        const real qd_1_t_2 = S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c1_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z) - end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z));
+        const real qd_1_t_3 = qd_1_t_2/w_1_t_3;
+        o->entry[0][k] = qd_1_t_3;
+        o->entry[1][k] = qd_1_t;
         o->entry[2][k] = S_dot_tip_x;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -4502,7 +4304,7 @@ INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const re
     deliver(qd_of, 9, w, code, rates);
 }
 
-/* ---- joint_accelerations: 564 mul, 375 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- joint_accelerations: 558 mul, 375 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -4639,6 +4441,7 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real alpha_z = s->alpha_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -4659,7 +4462,6 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -4716,13 +4518,12 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -4740,12 +4541,8 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
         /* (upu-V1) velocity of the connection point */
         const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -4753,41 +4550,45 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real S_dot_x = S_dot_t + t_dot_x;
         const real S_dot_y = S_dot_t_2 + t_dot_y;
         const real S_dot_z = S_dot_t_3 + t_dot_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
         /* (upu-V18) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        /* (upu-A8) rate of moment direction 1 */
         const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
             axis_x_upu_axes2_z*omega_z;
         const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
             axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
         const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
             axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
         /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c1_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
         /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
         /* (upu-A8) rate of moment direction 1 */
         const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
             end_p1_r3_x*omega_tip_z;
         const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
             end_p1_r3_y*omega_tip_z;
         /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
+        const real zeta_2_y = omega_1_t*qd_1_t;
         /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t_2 - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
         const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
             omega_tip_y);
         const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
+        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
+            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real etad_1 = nu_1 - etad_1_t;
         /* (upu-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -4796,25 +4597,24 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
         /* (upu-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z + root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t_2*qd_1_t_2);
+            S_ddot_z*axis_x_upu_axes2_z + root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t*qd_1_t);
         const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
             S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A10) acceleration of joint 1 */
-        const real qdd_1_t = o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real qdd_1_t_2 = inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x +
+        /* (upu-A11) acceleration of joint 1 */
+        const real qdd_1_t = inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x +
             S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z -
-            bias_t*qd_1_t_2) + omega_1_t*omega_1_t_2;
-        const real qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t;
-        o->entry[0][k] = qdd_1;
-        o->entry[1][k] = qdd_1_t_2;
+            bias_t*qd_1_t) + omega_1_t*omega_1_t_2;
+        const real qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z);
+        o->entry[0][k] = qdd_1_t_2;
+        o->entry[1][k] = qdd_1_t;
         o->entry[2][k] = rel_x;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }
@@ -4864,7 +4664,7 @@ INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, 
     deliver(qdd_of, 9, w, code, accelerations);
 }
 
-/* ---- constraints: 138 mul, 102 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+/* ---- constraints: 234 mul, 153 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
@@ -4945,13 +4745,18 @@ INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
         const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
         const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
         const real upu_base_frame_zx = m->upu_base_frame_zx[i];
         const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
         const real upu_base_point_x = m->upu_base_point_x[i];
         const real upu_base_point_y = m->upu_base_point_y[i];
         const real upu_base_point_z = m->upu_base_point_z[i];
@@ -4976,6 +4781,17 @@ INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real rho2_1 = px_1*px_1 + py_1*py_1;
         /* (upu-K5) amplitude, with the sign of the branch */
         const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
             R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
@@ -4987,12 +4803,28 @@ INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, con
             upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
             R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
             R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
         /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
         const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1;
-        o->entry[0][k] = -end_p1_r1_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t = root_1*root_2;
+        /* (M10) distance by which the leg misses the connection point, along a direction left out */
+        const real phi_c1_t = root_2*(py_1*s_1 - c_1*px_1)*(-c_2*(end_p1_r0_z*s_2 -
+            c_2*end_p1_r1_y) - s_2*(-c_2*end_p1_r0_z - end_p1_r1_y*s_2))/volume_c_t;
+        const real phi_c1 = c_1*end_p1_r0_x - phi_c1_t - end_p1_r0_y*s_1;
+        o->entry[0][k] = phi_c1;
+        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t);
     }
 }
 
@@ -5187,6 +5019,7 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
+        const real n_c1_t = m->n_c1_t[i];
         const real size_ = m->size_[i];
         const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
@@ -5208,7 +5041,6 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -5265,13 +5097,12 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
-        /* (upu-V9) force part of reciprocal wrench 1 */
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V8) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
         const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
@@ -5289,73 +5120,8 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
             axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
         const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
             axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
         const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
-        /* (upu-V15) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V18) rate of joint 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t;
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1*s_2;
-        const real omega_1_t_2 = c_2*qd_1;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t_2;
-        const real zeta_2_y = omega_1_t*qd_1_t_2;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t_2*qd_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t_2;
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-           */
-        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
-        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
-        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
             axis_x_upu_axes2_x*end_p1_r3_y;
@@ -5363,6 +5129,66 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
             axis_x_upu_axes2_y*end_p1_r3_y;
         const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
             axis_x_upu_axes2_z*end_p1_r3_y;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V18) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        /* (upu-V23) centripetal tensor of link 2 */
+        const real W_2_t = qd_1_t*qd_1_t;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
+        const real bias_t_2 = bias_t*qd_1_t;
+        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
+        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
+        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
+        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
+        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
+        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
+        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
+        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
+        /* (upu-V18) rate of joint 1 */
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c1_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
+        /* (upu-V21) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
+            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real etad_1 = nu_1 - etad_1_t;
         /* (upu-A2) acceleration of the connection point without its centripetal part */
         const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
         const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
@@ -5371,48 +5197,52 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
         const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
         const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-V23) centripetal tensor of link 2 */
+        const real W_2_t_2 = omega_1_t*omega_1_t;
+        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t_3 = bias_t*omega_1_t_2;
+        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
         /* (upu-A6) acceleration of the connection point left to the joint accelerations */
         const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
             S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A10) acceleration of joint 1 */
-        const real qdd_1_t = o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
-            alpha_z*axis_x_upu_axes2_z) - o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real qdd_1_t_2 = S_ddot_x*axis_y_upu_axes2_in_base_x +
+        /* (upu-A11) acceleration of joint 1 */
+        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
             S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
-        const real qdd_1_t_3 = inv_root_2*qdd_1_t_2;
-        const real qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t;
-        /* (upu-A16) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1;
-        /* (upu-A20) angular acceleration of link 2 */
+        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
+        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z);
+        /* (upu-A17) angular acceleration of link 1 */
+        const real alpha_1_t = qdd_1_t_3*s_2;
+        const real alpha_1_t_2 = c_2*qdd_1_t_3;
+        /* (upu-A21) angular acceleration of link 2 */
         const real alpha_2_x = alpha_1_t - zeta_2_x;
         const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upu-A24) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t_3;
+        /* (upu-A25) acceleration tensor of link 2 */
+        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
         const real B_2_zx = zeta_2_y - alpha_2_y;
         const real B_2_zy = alpha_2_x - zeta_2_x;
         /* (upu-N3) acceleration of the reference point of link 3, less gravity */
         const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
             S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
-        const real acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y;
+        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
         const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
         /* (upu-N11) inertia force of link 3 less its weight */
         const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
-            h_3_x*(W_2_t_2 + W_2_t_3);
-        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_3 + h_3_z*(W_2_t + W_2_t_3) -
+            h_3_x*(W_2_t + W_2_t_3);
+        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
             alpha_1_t*h_3_y;
-        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t +
-            W_2_t_2);
+        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
+            W_2_t_3);
         /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_3 + J_group_2_yz*(W_2_t_2 -
-            W_2_t_3) + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy -
+        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
+            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
             acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x -
-            B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t_3 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
+        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
+            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
+            acc_3_z*h_3_x - g_r3_x*h_2_y;
+        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
+            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
             J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
         /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
            left out */
@@ -5422,7 +5252,8 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
            freedoms */
         const real G_t = f_3_y + inv_root_2*mu_2_z;
         const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
-        /* (upu-N46) leg force on the platform without actuation and without the mass at the connection
+        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z;
+        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
            point */
         const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
             G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
@@ -5430,14 +5261,14 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
             G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
         const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
             G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
-        /* (upu-N42) moment at the connection point that balances the leg's inertia and weight along all
+        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
            freedoms */
-        const real G_m_t = N_2_r0_y*o_1_x;
-        const real G_m_t_2 = N_2_r0_y*o_1_y;
-        /* (upu-N51) moment of the leg on the platform without actuation */
-        const real c_m_in_base_x = G_m_t*axis_x_upu_axes2_x - G_m_t_2*axis_y_upu_axes2_in_base_x;
-        const real c_m_in_base_y = G_m_t*axis_x_upu_axes2_y - G_m_t_2*axis_y_upu_axes2_in_base_y;
-        const real c_m_in_base_z = G_m_t*axis_x_upu_axes2_z - G_m_t_2*axis_y_upu_axes2_in_base_z;
+        const real G_m_x = G_t_3*end_p1_r3_y;
+        const real G_m_y = G_t_3*end_p1_r3_x;
+        /* (upu-N55) moment of the leg on the platform without actuation */
+        const real c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x;
+        const real c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y;
+        const real c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z;
         o->entry[0][k] = c_in_base_x;
         o->entry[1][k] = c_in_base_y;
         o->entry[2][k] = c_in_base_z;
@@ -5447,15 +5278,15 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[6][k] = axis_x_upu_axes2_x;
         o->entry[7][k] = axis_x_upu_axes2_y;
         o->entry[8][k] = axis_x_upu_axes2_z;
-        o->entry[9][k] = -n_c_t;
-        o->entry[10][k] = -n_c_t_2;
-        o->entry[11][k] = -n_c_t_3;
+        o->entry[9][k] = -n_c1_t_2;
+        o->entry[10][k] = -n_c1_t_3;
+        o->entry[11][k] = -n_c1_t_4;
         o->entry[12][k] = n_m1_in_base_x;
         o->entry[13][k] = n_m1_in_base_y;
         o->entry[14][k] = n_m1_in_base_z;
         o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
             unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + unless(magnitude(root_2) >
+            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
             TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
     }
 }

@@ -92,13 +92,13 @@ typedef struct {
     tripod_3upu_real J_group_2_xx[3], J_group_2_xy[3], J_group_2_xz[3], J_group_2_yy[3],
             J_group_2_yz[3], J_group_2_zz[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], b_r0_x[3],
             b_r0_y[3], b_r0_z[3], branch_1[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], size_[3], size_t_3[3],
+            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], n_c1_t[3], size_[3], size_t_3[3],
             upu_base_frame_xx[3], upu_base_frame_xy[3], upu_base_frame_xz[3], upu_base_frame_yx[3],
             upu_base_frame_yy[3], upu_base_frame_yz[3], upu_base_frame_zx[3], upu_base_frame_zy[3],
             upu_base_frame_zz[3], upu_base_point_x[3], upu_base_point_y[3], upu_base_point_z[3],
             upu_link2_mass[3], upu_link3_mass[3], upu_platform_joint_axis_platform_x[3],
             upu_platform_joint_axis_platform_y[3], upu_platform_joint_axis_platform_z[3],
-            upu_platform_point_x[3], upu_platform_point_y[3], upu_platform_point_z[3], volume_c_t[3];
+            upu_platform_point_x[3], upu_platform_point_y[3], upu_platform_point_z[3];
 } tripod_3upu_model;
 
 extern const tripod_3upu_params tripod_3upu_default_params;
@@ -110,12 +110,12 @@ extern const tripod_3upu_real tripod_3upu_HOME_Q[TRIPOD_3UPU_NJ];
    model is all NaN. */
 int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *model);
 
-/* Inertia matrix M. 1650 mul, 1065 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int tripod_3upu_M(const tripod_3upu_model *model, const tripod_3upu_real *X, tripod_3upu_real *M);
 size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *M, int *status);
 
-/* Velocity and gravity terms Z. 828 mul, 606 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
+/* Velocity and gravity terms Z. 849 mul, 618 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV).
    Out: Z (NV). */
 int tripod_3upu_Z(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *Z);
@@ -135,7 +135,7 @@ int tripod_3upu_Hk(const tripod_3upu_model *model, const tripod_3upu_real *X, tr
 size_t tripod_3upu_Hk_batch(const tripod_3upu_model *model, size_t n, const tripod_3upu_real *X,
     tripod_3upu_real *Hk, int *status);
 
-/* M, Z and H together, sharing the work. 2235 mul, 1521 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int tripod_3upu_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H);
@@ -143,14 +143,14 @@ size_t tripod_3upu_dynamics_batch(const tripod_3upu_model *model, size_t n, cons
     *X, const tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H,
     int *status);
 
-/* Residuals of the constraints [m]; zero where the loops close. 138 mul, 102 add, 3 div, 3 sqrt,
+/* Residuals of the constraints [m]; zero where the loops close. 234 mul, 153 add, 9 div, 6 sqrt,
    0 trig. In: X (NQ). Out: residual (NC). */
 int tripod_3upu_constraints(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *residual);
 size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *residual, int *status);
 
-/* The vector bias in Hk^T A + bias = 0. 483 mul, 306 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* The vector bias in Hk^T A + bias = 0. 495 mul, 318 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: bias (NC). */
 int tripod_3upu_constraint_bias(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *bias);
@@ -164,14 +164,14 @@ int tripod_3upu_inverse_kinematics(const tripod_3upu_model *model, const tripod_
 size_t tripod_3upu_inverse_kinematics_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, tripod_3upu_real *q, int *status);
 
-/* Rates of all joints. 375 mul, 237 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
+/* Rates of all joints. 366 mul, 237 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV). Out: rates
    (NJ). */
 int tripod_3upu_joint_rates(const tripod_3upu_model *model, const tripod_3upu_real *X, const
     tripod_3upu_real *V, tripod_3upu_real *rates);
 size_t tripod_3upu_joint_rates_batch(const tripod_3upu_model *model, size_t n, const
     tripod_3upu_real *X, const tripod_3upu_real *V, tripod_3upu_real *rates, int *status);
 
-/* Accelerations of all joints. 564 mul, 375 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
+/* Accelerations of all joints. 558 mul, 375 add, 12 div, 6 sqrt, 0 trig. In: X (NQ), V (NV), A
    (NV). Out: accelerations (NJ). */
 int tripod_3upu_joint_accelerations(const tripod_3upu_model *model, const tripod_3upu_real *X,
     const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real *accelerations);
@@ -189,7 +189,7 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
     tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, const
     tripod_3upu_real *wrench, tripod_3upu_real *tau, tripod_3upu_real *lambda, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 2235 mul, 1521 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1647 mul, 1185 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV), lambda (NC). */
 int tripod_3upu_forward_dynamics(const tripod_3upu_model *model, const tripod_3upu_real *X, const

@@ -352,8 +352,8 @@ def _prepare(p):
     )
     size_t_3 = size_t + size_t_2
     size = sqrt(size_t_3)
-    # (upu-V6) triple product of the velocity vectors
-    volume_c_t = size*size_t_3
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_t = size*size_t_3
     # (upu-G4) first moment of link 3 about the origin of link 3
     h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass
     h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass
@@ -474,6 +474,7 @@ def _prepare(p):
             "h_3_x": np.broadcast_to(h_3_x, _upu),
             "h_3_y": np.broadcast_to(h_3_y, _upu),
             "h_3_z": np.broadcast_to(h_3_z, _upu),
+            "n_c1_t": np.broadcast_to(n_c1_t, _upu),
             "size": np.broadcast_to(size, _upu),
             "size_t_3": np.broadcast_to(size_t_3, _upu),
             "upu_base_frame_xx": np.broadcast_to(upu_base_frame_xx, _upu),
@@ -496,7 +497,6 @@ def _prepare(p):
             "upu_platform_point_x": np.broadcast_to(upu_platform_point_x, _upu),
             "upu_platform_point_y": np.broadcast_to(upu_platform_point_y, _upu),
             "upu_platform_point_z": np.broadcast_to(upu_platform_point_z, _upu),
-            "volume_c_t": np.broadcast_to(volume_c_t, _upu),
         },
     }
     return shared, legs
@@ -650,7 +650,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 2235 mul, 1521 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -760,12 +760,13 @@ def _dynamics_upu(c, k, x, s, f):
     (
     J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
         Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-        h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
-        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z, volume_c_t,
+        h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size, size_t_3, upu_base_frame_xx,
+        upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
+        upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
+        upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
+        upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -836,12 +837,12 @@ def _dynamics_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -868,10 +869,10 @@ def _dynamics_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
-    # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
+    w_1_t_4 = inv_w_1_t_25*n_c1_z
+    # (upu-A19) coefficient of the acceleration in: angular acceleration of link 1
     d_alpha_1_t = inv_w_1_t_25*s_2
     d_alpha_1_t_2 = c_2*inv_w_1_t_25
     # (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
@@ -880,8 +881,6 @@ def _dynamics_upu(c, k, x, s, f):
     d_phi_3_t = h_3_z*inv_root_2
     d_phi_3_t_2 = d_alpha_1_t_2*h_3_y
     # (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_t = c_2*h_3_y
-    d_Gamma_1_y = s_2*(J_group_2_xz*inv_root_2 - h_3_y) - J_group_2_yz*c_2*inv_root_2
     d_Gamma_1_z = (
     s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 - d_acc_3_t*h_3_z) -
         c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 - d_acc_3_t*h_3_x -
@@ -891,7 +890,7 @@ def _dynamics_upu(c, k, x, s, f):
     d_G_t = (
     inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 - d_alpha_1_t*h_3_y*root_2)
     )
-    # (upu-N50) inertia of the leg at the connection point, without the mass gathered there
+    # (upu-N54) inertia of the leg at the connection point, without the mass gathered there
     Q_t = (
     inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass + h_3_x*inv_root_2)) -
         upu_link3_mass
@@ -932,42 +931,42 @@ def _dynamics_upu(c, k, x, s, f):
     )
     Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
     Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
-    # (upu-V15) moment part of reciprocal wrench 1
+    # (upu-V14) moment part of reciprocal wrench 1
     o_1_x = end_p1_r3_y*w_1_t_4
     o_1_y = end_p1_r3_x*w_1_t_4
-    o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2)
-    o_1_z = n_m1_r0_y*w_1_t_4
-    # (upu-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d0_alpha_1_t = o_1_y_2*s_2
-    d0_alpha_1_t_2 = c_2*o_1_y_2
-    d0_alpha_1_t_3 = o_1_z*s_2
-    d0_alpha_1_t_4 = c_2*o_1_z
-    _x = d0_alpha_1_t_3*s_2 - c_2*d0_alpha_1_t
-    _y = -c_2*d0_alpha_1_t_3 - d0_alpha_1_t*s_2
-    _x_2 = c_2*d0_alpha_1_t_2 - d0_alpha_1_t_4*s_2
-    _y_2 = c_2*d0_alpha_1_t_4 + d0_alpha_1_t_2*s_2
+    # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
+    d0_alpha_1_xx = o_1_x*s_2
+    d0_alpha_1_xy = o_1_y*s_2
+    d0_alpha_1_yx = c_2*o_1_x
+    d0_alpha_1_yy = c_2*o_1_y
     # (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-    d0_acc_3_t = _x_2*root_2
-    d0_acc_3_t_2 = _y_2*root_2
+    d0_acc_3_t = d0_alpha_1_yx*root_2
+    d0_acc_3_t_2 = d0_alpha_1_yy*root_2
     # (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d0_phi_3_t = _x_2*h_3_y
-    d0_phi_3_t_2 = _y_2*h_3_y
+    d0_phi_3_t = d0_alpha_1_yx*h_3_y
+    d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y
     # (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
     d0_Gamma_1_x = (
-    s_2*(J_group_2_xx*_x + J_group_2_xy*_x_2 + d0_acc_3_t*h_3_z) - c_2*(J_group_2_xy*_x +
-        J_group_2_yy*_x_2 + d0_acc_3_t*h_3_x - root_2*(-_x*h_3_z - _x_2*h_3_x -
-        d0_acc_3_t*upu_link3_mass))
+    s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z - J_group_2_xx*d0_alpha_1_xx) -
+        c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x - J_group_2_xy*d0_alpha_1_xx -
+        root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass - d0_alpha_1_yx*h_3_x))
     )
     d0_Gamma_1_y = (
-    s_2*(J_group_2_xx*_y + J_group_2_xy*_y_2 + d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*_y +
-        J_group_2_yy*_y_2 + d0_acc_3_t_2*h_3_x - root_2*(-_y*h_3_z - _y_2*h_3_x -
-        d0_acc_3_t_2*upu_link3_mass))
+    s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_z) -
+        c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_x -
+        root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x - d0_alpha_1_xy*h_3_z))
     )
     # (upu-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     d0_G_t = d0_Gamma_1_x*inv_w_1_t_25
     d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25
-    d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2)
-    d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2)
+    d0_G_t_3 = (
+    inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2 -
+        J_group_2_xz*d0_alpha_1_xx)
+    )
+    d0_G_t_4 = (
+    inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy -
+        d0_alpha_1_xy*h_3_y*root_2)
+    )
     # (M2) coupling block of M
     M_ta_t = Q_t_13*q_in_base_z
     M_ta_t_2 = Q_t_14*q_in_base_y
@@ -980,178 +979,130 @@ def _dynamics_upu(c, k, x, s, f):
     M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
     M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
     M_ta_t_11 = M_ta_t_6 - M_ta_t_2
-    # (upu-N47) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    _x_3 = c_2*d0_phi_3_t + d0_G_t_3*s_2
-    _y_3 = c_2*d0_G_t_3 - d0_phi_3_t*s_2
-    _x_4 = c_2*d0_phi_3_t_2 + d0_G_t_4*s_2
-    _y_4 = c_2*d0_G_t_4 - d0_phi_3_t_2*s_2
-    _x_5 = -_x_3*c_2 - _x_4*s_2
-    _y_5 = _x_3*s_2 - _x_4*c_2
-    _x_6 = -_y_3*c_2 - _y_4*s_2
-    _y_6 = _y_3*s_2 - _y_4*c_2
-    _x_7 = c_2*d0_G_t + d0_G_t_2*s_2
-    _y_7 = c_2*d0_G_t_2 - d0_G_t*s_2
-    _x_8 = -_x_5*s_1 - _x_7*c_1
-    _y_8 = _x_7*s_1 - _x_5*c_1
-    _x_9 = -_y_5*s_1 - _y_7*c_1
-    _y_9 = _y_7*s_1 - _y_5*c_1
-    d0_c_t = _x_8*s_1
-    d0_c_t_2 = _x_8*c_1
-    d0_c_t_3 = _y_8*s_1
-    d0_c_t_4 = _y_8*c_1
-    d0_c_t_5 = _x_6*s_1
-    d0_c_t_6 = _x_6*c_1
-    _x_10 = -d0_c_t*upu_base_frame_xx - d0_c_t_3*upu_base_frame_xy - d0_c_t_5*upu_base_frame_xz
-    _y_10 = -d0_c_t*upu_base_frame_yx - d0_c_t_3*upu_base_frame_yy - d0_c_t_5*upu_base_frame_yz
-    _z = -d0_c_t*upu_base_frame_zx - d0_c_t_3*upu_base_frame_zy - d0_c_t_5*upu_base_frame_zz
-    _x_11 = -d0_c_t_2*upu_base_frame_xx - d0_c_t_4*upu_base_frame_xy - d0_c_t_6*upu_base_frame_xz
-    _y_11 = -d0_c_t_2*upu_base_frame_yx - d0_c_t_4*upu_base_frame_yy - d0_c_t_6*upu_base_frame_yz
-    _z_2 = -d0_c_t_2*upu_base_frame_zx - d0_c_t_4*upu_base_frame_zy - d0_c_t_6*upu_base_frame_zz
-    _x_12 = _x_9*upu_base_frame_xx + _y_6*upu_base_frame_xz + _y_9*upu_base_frame_xy
-    _y_12 = _x_9*upu_base_frame_yx + _y_6*upu_base_frame_yz + _y_9*upu_base_frame_yy
-    _z_3 = _x_9*upu_base_frame_zx + _y_6*upu_base_frame_zz + _y_9*upu_base_frame_zy
-    _y_13 = _x_10*upu_base_frame_yx + _x_11*upu_base_frame_yy + _x_12*upu_base_frame_yz
-    _z_4 = _x_10*upu_base_frame_zx + _x_11*upu_base_frame_zy + _x_12*upu_base_frame_zz
-    _x_13 = _y_10*upu_base_frame_xx + _y_11*upu_base_frame_xy + _y_12*upu_base_frame_xz
-    _y_14 = _y_10*upu_base_frame_yx + _y_11*upu_base_frame_yy + _y_12*upu_base_frame_yz
-    _z_5 = _y_10*upu_base_frame_zx + _y_11*upu_base_frame_zy + _y_12*upu_base_frame_zz
-    _x_14 = _z*upu_base_frame_xx + _z_2*upu_base_frame_xy + _z_3*upu_base_frame_xz
-    _y_15 = _z*upu_base_frame_yx + _z_2*upu_base_frame_yy + _z_3*upu_base_frame_yz
-    _z_6 = _z*upu_base_frame_zx + _z_2*upu_base_frame_zy + _z_3*upu_base_frame_zz
+    # (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d0_c_in_base_x = (
+    -axis_x_upu_axes2_x*d0_phi_3_t - axis_y_upu_axes2_in_base_x*d0_G_t_3 -
+        axis_z_upu_axes2_in_base_x*d0_G_t
+    )
+    d0_c_in_base_y = (
+    -axis_x_upu_axes2_y*d0_phi_3_t - axis_y_upu_axes2_in_base_y*d0_G_t_3 -
+        axis_z_upu_axes2_in_base_y*d0_G_t
+    )
+    d0_c_in_base_z = (
+    -axis_x_upu_axes2_z*d0_phi_3_t - axis_y_upu_axes2_in_base_z*d0_G_t_3 -
+        axis_z_upu_axes2_in_base_z*d0_G_t
+    )
+    d0_c_in_base_x_2 = (
+    axis_x_upu_axes2_x*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_x*d0_G_t_4 -
+        axis_z_upu_axes2_in_base_x*d0_G_t_2
+    )
+    d0_c_in_base_y_2 = (
+    axis_x_upu_axes2_y*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_y*d0_G_t_4 -
+        axis_z_upu_axes2_in_base_y*d0_G_t_2
+    )
+    d0_c_in_base_z_2 = (
+    axis_x_upu_axes2_z*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_z*d0_G_t_4 -
+        axis_z_upu_axes2_in_base_z*d0_G_t_2
+    )
+    d0_c_in_base_y_3 = (
+    axis_x_upu_axes2_y*d0_c_in_base_x + axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2
+    )
+    d0_c_in_base_z_3 = (
+    axis_x_upu_axes2_z*d0_c_in_base_x + axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2
+    )
+    d0_c_in_base_x_3 = (
+    axis_x_upu_axes2_x*d0_c_in_base_y + axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2
+    )
+    d0_c_in_base_y_4 = (
+    axis_x_upu_axes2_y*d0_c_in_base_y + axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2
+    )
+    d0_c_in_base_z_4 = (
+    axis_x_upu_axes2_z*d0_c_in_base_y + axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2
+    )
+    d0_c_in_base_x_4 = (
+    axis_x_upu_axes2_x*d0_c_in_base_z + axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2
+    )
+    d0_c_in_base_y_5 = (
+    axis_x_upu_axes2_y*d0_c_in_base_z + axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2
+    )
+    d0_c_in_base_z_5 = (
+    axis_x_upu_axes2_z*d0_c_in_base_z + axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2
+    )
     # (M2) coupling block of M
     M_ta_t_12 = (
-    M_ta_t + _x_10*upu_base_frame_xx + _x_11*upu_base_frame_xy + _x_12*upu_base_frame_xz -
+    M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x + axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 -
         M_ta_t_2
     )
-    M_ta_t_13 = M_ta_t_3 - _y_13
-    M_ta_t_14 = M_ta_t_4 + _z_4
-    M_ta_t_15 = M_ta_t_5 + _x_13
-    M_ta_t_16 = M_ta_t_7 - _y_14
-    M_ta_t_17 = M_ta_t_8 + _z_5
-    M_ta_t_18 = M_ta_t_9 + _x_14
-    M_ta_t_19 = M_ta_t_10 - _y_15
-    M_ta_t_20 = M_ta_t_11 - _z_6
-    # (upu-N43) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d0_G_m_t = d0_Gamma_1_x*o_1_x
-    d0_G_m_t_2 = d0_Gamma_1_y*o_1_x
-    d0_G_m_t_3 = d0_Gamma_1_x*o_1_y
-    d0_G_m_t_4 = d0_Gamma_1_y*o_1_y
-    # (upu-N44) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_m_t = d_Gamma_1_t*o_1_x
-    d_G_m_t_2 = d_Gamma_1_y*o_1_x
-    d_G_m_t_3 = d_Gamma_1_z*o_1_x
-    d_G_m_t_4 = d_Gamma_1_t*o_1_y
-    d_G_m_t_5 = d_Gamma_1_y*o_1_y
-    d_G_m_t_6 = d_Gamma_1_z*o_1_y
-    # (upu-N53) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_15 = c_2*d_G_m_t - d_G_m_t_4*s_2
-    _y_16 = -c_2*d_G_m_t_4 - d_G_m_t*s_2
-    _x_16 = d_G_m_t_5*s_2 - c_2*d_G_m_t_2
-    _y_17 = c_2*d_G_m_t_5 + d_G_m_t_2*s_2
-    _x_17 = d_G_m_t_6*s_2 - c_2*d_G_m_t_3
-    _y_18 = c_2*d_G_m_t_6 + d_G_m_t_3*s_2
-    _x_18 = -_x_15*c_2 - _x_16*s_2
-    _y_19 = _x_15*s_2 - _x_16*c_2
-    _x_19 = -_y_16*c_2 - _y_17*s_2
-    _y_20 = _y_16*s_2 - _y_17*c_2
-    d_c_m_t = _x_17*s_1
-    d_c_m_t_2 = _x_17*c_1
-    d_c_m_t_3 = _x_18*s_1
-    d_c_m_t_4 = _x_18*c_1
-    d_c_m_t_5 = _y_19*s_1
-    d_c_m_t_6 = _y_19*c_1
-    _x_20 = c_1*d_c_m_t + d_c_m_t_3*s_1
-    _y_21 = c_1*d_c_m_t_3 - d_c_m_t*s_1
-    _x_21 = c_1*d_c_m_t_2 + d_c_m_t_4*s_1
-    _y_22 = c_1*d_c_m_t_4 - d_c_m_t_2*s_1
-    _x_22 = -_x_19*s_1 - _y_18*c_1
-    _y_23 = _y_18*s_1 - _x_19*c_1
-    _x_23 = _x_20*upu_base_frame_xx + _x_21*upu_base_frame_xy + _x_22*upu_base_frame_xz
-    _y_24 = _x_20*upu_base_frame_yx + _x_21*upu_base_frame_yy + _x_22*upu_base_frame_yz
-    _z_7 = _x_20*upu_base_frame_zx + _x_21*upu_base_frame_zy + _x_22*upu_base_frame_zz
-    _x_24 = _y_21*upu_base_frame_xx + _y_22*upu_base_frame_xy + _y_23*upu_base_frame_xz
-    _y_25 = _y_21*upu_base_frame_yx + _y_22*upu_base_frame_yy + _y_23*upu_base_frame_yz
-    _z_8 = _y_21*upu_base_frame_zx + _y_22*upu_base_frame_zy + _y_23*upu_base_frame_zz
-    _x_25 = _y_20*upu_base_frame_xz - d_c_m_t_5*upu_base_frame_xx - d_c_m_t_6*upu_base_frame_xy
-    _y_26 = _y_20*upu_base_frame_yz - d_c_m_t_5*upu_base_frame_yx - d_c_m_t_6*upu_base_frame_yy
-    _z_9 = _y_20*upu_base_frame_zz - d_c_m_t_5*upu_base_frame_zx - d_c_m_t_6*upu_base_frame_zy
-    _x_26 = _x_23*upu_base_frame_xx + _x_24*upu_base_frame_xy + _x_25*upu_base_frame_xz
-    _y_27 = _x_23*upu_base_frame_yx + _x_24*upu_base_frame_yy + _x_25*upu_base_frame_yz
-    _z_10 = _x_23*upu_base_frame_zx + _x_24*upu_base_frame_zy + _x_25*upu_base_frame_zz
-    _x_27 = _y_24*upu_base_frame_xx + _y_25*upu_base_frame_xy + _y_26*upu_base_frame_xz
-    # (upu-N52) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_28 = d0_G_m_t_3*s_2 - c_2*d0_G_m_t
-    _y_28 = c_2*d0_G_m_t_3 + d0_G_m_t*s_2
-    _x_29 = d0_G_m_t_4*s_2 - c_2*d0_G_m_t_2
-    _y_29 = c_2*d0_G_m_t_4 + d0_G_m_t_2*s_2
-    _x_30 = -_x_28*c_2 - _x_29*s_2
-    _y_30 = _x_28*s_2 - _x_29*c_2
-    _x_31 = -_y_28*c_2 - _y_29*s_2
-    _y_31 = _y_28*s_2 - _y_29*c_2
-    d0_c_m_t = _x_30*s_1
-    d0_c_m_t_2 = _x_30*c_1
-    d0_c_m_t_3 = _y_30*s_1
-    d0_c_m_t_4 = _y_30*c_1
-    d0_c_m_t_5 = d0_c_m_t*s_1
-    d0_c_m_t_6 = c_1*d0_c_m_t
-    d0_c_m_t_7 = d0_c_m_t_2*s_1
-    d0_c_m_t_8 = c_1*d0_c_m_t_2
-    d0_c_m_t_9 = _x_31*s_1
-    d0_c_m_t_10 = _x_31*c_1
-    _x_32 = (
-    d0_c_m_t_5*upu_base_frame_xx + d0_c_m_t_7*upu_base_frame_xy - d0_c_m_t_9*upu_base_frame_xz
+    M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3
+    M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3
+    M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3
+    M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4
+    M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4
+    M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4
+    M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5
+    M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5
+    # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_t = d0_Gamma_1_x*w_1_t_4
+    d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4
+    # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_t = c_2*h_3_y*w_1_t_4
+    d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) - J_group_2_yz*c_2*inv_root_2)
+    d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4
+    # (upu-V5) direction 1 of the moment that the platform joint transmits
+    n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
+    n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
+    n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
+    # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_in_base_x = (
+    axis_y_upu_axes2_in_base_x*d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*d_G_m1_t_3 -
+        axis_x_upu_axes2_x*d_G_m1_t
     )
-    _y_32 = (
-    d0_c_m_t_5*upu_base_frame_yx + d0_c_m_t_7*upu_base_frame_yy - d0_c_m_t_9*upu_base_frame_yz
+    d_G_m1_in_base_y = (
+    axis_y_upu_axes2_in_base_y*d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*d_G_m1_t_3 -
+        axis_x_upu_axes2_y*d_G_m1_t
     )
-    _x_33 = (
-    d0_c_m_t_6*upu_base_frame_xx + d0_c_m_t_8*upu_base_frame_xy - d0_c_m_t_10*upu_base_frame_xz
+    d_G_m1_in_base_z = (
+    axis_y_upu_axes2_in_base_z*d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*d_G_m1_t_3 -
+        axis_x_upu_axes2_z*d_G_m1_t
     )
-    _y_33 = (
-    d0_c_m_t_6*upu_base_frame_yx + d0_c_m_t_8*upu_base_frame_yy - d0_c_m_t_10*upu_base_frame_yz
-    )
-    _x_34 = _y_31*upu_base_frame_xz - d0_c_m_t_3*upu_base_frame_xx - d0_c_m_t_4*upu_base_frame_xy
-    _y_34 = _y_31*upu_base_frame_yz - d0_c_m_t_3*upu_base_frame_yx - d0_c_m_t_4*upu_base_frame_yy
-    _z_11 = (
-    upu_base_frame_zx*(d0_c_m_t_5*upu_base_frame_zx + d0_c_m_t_7*upu_base_frame_zy -
-        d0_c_m_t_9*upu_base_frame_zz) + upu_base_frame_zy*(d0_c_m_t_6*upu_base_frame_zx +
-        d0_c_m_t_8*upu_base_frame_zy - d0_c_m_t_10*upu_base_frame_zz) +
-        upu_base_frame_zz*(_y_31*upu_base_frame_zz - d0_c_m_t_3*upu_base_frame_zx -
-        d0_c_m_t_4*upu_base_frame_zy)
-    )
+    # (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x
+    d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x
+    d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x
+    d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y
+    # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t + axis_y_upu_axes2_in_base_y*d0_G_m1_t_2
+    d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t + axis_y_upu_axes2_in_base_z*d0_G_m1_t_2
     # (M3) rotational block of M
     M_aa_t = (
-    M_ta_t_5*q_in_base_z + _x_13*q_in_base_z + _y_27*q_in_base_z - M_ta_t_9*q_in_base_y -
-        _x_14*q_in_base_y - _x_32*upu_base_frame_xx - _x_33*upu_base_frame_xy -
-        _x_34*upu_base_frame_xz - _z_10*q_in_base_y
+    M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z + d_G_m_xz*q_in_base_y +
+        n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t + axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) -
+        M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z
     )
     M_aa_t_2 = (
-    M_ta_t_7*q_in_base_z + _x_26*q_in_base_z + _x_32*upu_base_frame_yx + _x_33*upu_base_frame_yy +
-        _x_34*upu_base_frame_yz + _y_15*q_in_base_y - M_ta_t_10*q_in_base_y - _y_14*q_in_base_z -
-        _z_10*q_in_base_x
+    M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x + d0_c_in_base_y_4*q_in_base_z +
+        d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z - d0_c_in_base_y_5*q_in_base_y -
+        d_G_m_xz*q_in_base_x
     )
     M_aa_t_3 = (
-    M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + _x_26*q_in_base_y + _z_5*q_in_base_z -
-        _x_32*upu_base_frame_zx - _x_33*upu_base_frame_zy - _x_34*upu_base_frame_zz -
-        _y_27*q_in_base_x - _z_6*q_in_base_y
+    M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_x +
+        d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x - d0_c_in_base_z_5*q_in_base_y -
+        d_G_m_xx*q_in_base_y
     )
     M_aa_t_4 = (
-    M_ta_t_10*q_in_base_x + _x_27*q_in_base_z + _y_13*q_in_base_z + _y_32*upu_base_frame_yx +
-        _y_33*upu_base_frame_yy + _y_34*upu_base_frame_yz - M_ta_t_3*q_in_base_z -
-        _y_15*q_in_base_x - q_in_base_x*(_y_24*upu_base_frame_zx + _y_25*upu_base_frame_zy +
-        _y_26*upu_base_frame_zz)
+    M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y + d0_c_in_base_y_5*q_in_base_x +
+        d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x - d0_c_in_base_y_3*q_in_base_z -
+        d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x
     )
     M_aa_t_5 = (
-    M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + _y_32*upu_base_frame_zx +
-        _y_33*upu_base_frame_zy + _y_34*upu_base_frame_zz + _z_4*q_in_base_z +
-        q_in_base_x*(_y_24*upu_base_frame_yx + _y_25*upu_base_frame_yy + _y_26*upu_base_frame_yz)
-        - _x_27*q_in_base_y - _z_6*q_in_base_x
+    M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + d0_c_in_base_z_3*q_in_base_z +
+        d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y - d0_c_in_base_z_5*q_in_base_x -
+        d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x
     )
     M_aa_t_6 = (
-    M_ta_t_4*q_in_base_y + _z_4*q_in_base_y + q_in_base_y*(_z_7*upu_base_frame_xx +
-        _z_8*upu_base_frame_xy + _z_9*upu_base_frame_xz) - _z_11 - M_ta_t_8*q_in_base_x -
-        _z_5*q_in_base_x - q_in_base_x*(_z_7*upu_base_frame_yx + _z_8*upu_base_frame_yy +
-        _z_9*upu_base_frame_yz)
+    M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z + d0_c_in_base_z_3*q_in_base_y +
+        d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x - M_ta_t_8*q_in_base_x -
+        d0_c_in_base_z_4*q_in_base_x - d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y
     )
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
@@ -1160,7 +1111,25 @@ def _dynamics_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
+    # (upu-V17) rate at which the joints turn along moment direction 1
+    eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
+    # (upu-V1) velocity of the connection point
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
+    qd_1_t = (
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
+    )
+    qd_1_t_2 = (
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c1_z)
+    )
+    # (upu-V21) angular velocity of link 1
+    omega_1_t = qd_1_t_2*s_2
+    omega_1_t_2 = c_2*qd_1_t_2
+    # (upu-A8) rate of moment direction 1
     omega_tip_x = (
     axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
     )
@@ -1172,44 +1141,26 @@ def _dynamics_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
-    # (upu-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
-    )
-    # (upu-V18) rate of joint 1
-    qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-        S_dot_z*axis_y_upu_axes2_in_base_z)
-    )
-    qd_1 = (
-    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
-    )
-    # (upu-V21) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (upu-A8) rate of moment direction 1
     nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
     nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
     # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_2
-    zeta_2_y = omega_1_t*qd_1_t_2
+    zeta_2_x = omega_1_t_2*qd_1_t
+    zeta_2_y = omega_1_t*qd_1_t
     # (upu-A9) bias of the angular acceleration along moment direction 1
     nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
     nu_1_t_2 = (
-    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 -
+    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
         end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
     )
     nu_1 = -nu_1_t - nu_1_t_2
     # (upu-V23) centripetal tensor of link 2
     W_2_t = omega_1_t*omega_1_t
     W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_2*qd_1_t_2
+    W_2_t_3 = qd_1_t*qd_1_t
     W_2_xy = omega_1_t*omega_1_t_2
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
-    bias_t_2 = bias_t*qd_1_t_2
+    bias_t_2 = bias_t*qd_1_t
     bias_t_3 = bias_t*omega_1_t_2
     bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
     # (upu-A1) centripetal acceleration of the connection point
@@ -1221,20 +1172,20 @@ def _dynamics_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
         axis_z_upu_axes2_in_base_z*u_1_z - bias_z
     )
-    # (upu-A11) remainder without the acceleration in: acceleration of joint 1
+    # (upu-A12) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o_t = (
     axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y +
         axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
     )
     qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-    qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4
-    # (upu-A19) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2*qdd_1_o
-    # (upu-A23) remainder without the acceleration in: angular acceleration of link 2
+    qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1)
+    # (upu-A20) remainder without the acceleration in: angular acceleration of link 1
+    alpha_1_o_t = qdd_1_o_t_3*s_2
+    alpha_1_o_t_2 = c_2*qdd_1_o_t_3
+    # (upu-A24) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (upu-A25) acceleration tensor of link 2
+    # (upu-A26) acceleration tensor of link 2
     B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t_2
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x
@@ -1278,7 +1229,8 @@ def _dynamics_upu(c, k, x, s, f):
     # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
     G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
-    # (upu-N55) velocity and gravity terms of the leg force
+    G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z
+    # (upu-N59) velocity and gravity terms of the leg force
     U_in_base_x = (
     G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
         axis_x_upu_axes2_x*f_3_o_x
@@ -1291,52 +1243,43 @@ def _dynamics_upu(c, k, x, s, f):
     G_o_t*axis_y_upu_axes2_in_base_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
         axis_x_upu_axes2_z*f_3_o_x
     )
-    # (upu-N45) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_o_t = N_2_o_r0_y*o_1_x
-    G_m_o_t_2 = N_2_o_r0_y*o_1_y
+    # (upu-N49) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_o_x = G_o_t_3*end_p1_r3_y
+    G_m_o_y = G_o_t_3*end_p1_r3_x
     # (M7) rotational part of Z
     Z_a_t = (
-    G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_t*axis_x_upu_axes2_x -
+    G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_x*axis_x_upu_axes2_x -
         U_in_base_y*q_in_base_z
     )
     Z_a_t_2 = (
-    G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_t*axis_x_upu_axes2_y -
+    G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_x*axis_x_upu_axes2_y -
         U_in_base_z*q_in_base_x
     )
     Z_a_t_3 = (
-    G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_t*axis_x_upu_axes2_z -
+    G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_x*axis_x_upu_axes2_z -
         U_in_base_x*q_in_base_y
     )
     # (M8) moment of the column's unit force about the platform origin
     H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
     H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
     H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
+    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
+    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
     # (M9) moment of the column's unit force about the platform origin
-    Hk_a_1_x = (
-    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
-        - n_c_t_3*q_in_base_y
-    )
-    Hk_a_1_y = (
-    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
-        - n_c_t*q_in_base_z
-    )
-    Hk_a_1_z = (
-    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y -
-        n_c_t_2*q_in_base_x
-    )
+    Hk_a_1_x = n_m1_in_base_x + n_c1_t_3*q_in_base_z - n_c1_t_4*q_in_base_y
+    Hk_a_1_y = n_m1_in_base_y + n_c1_t_4*q_in_base_x - n_c1_t_2*q_in_base_z
+    Hk_a_1_z = n_m1_in_base_z + n_c1_t_2*q_in_base_y - n_c1_t_3*q_in_base_x
     # (M11) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1 = nu_1 - n_c_z*rel_o_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    gamma_c1 = nu_1 - n_c1_z*rel_o_z
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
         M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t,
         Z_a_t_2, Z_a_t_3,), (axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t,
-        H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
+        H_a_3_t_2, H_a_3_t_3, -n_c1_t_2, -n_c1_t_3, -n_c1_t_4, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
         gamma_c1,),
     )
 
@@ -1368,9 +1311,9 @@ def _dynamics_after(c, s, t, f):
     M_ta_zy = total_upu_zy - h_star_in_base_x
     # (M3) rotational block of M
     M_aa_xx = J_star_t_10 + total_upu_xx_3
-    M_aa_xy = J_star_t_11 - total_upu_xy_3
+    M_aa_xy = J_star_t_11 + total_upu_xy_3
     M_aa_xz = J_star_t_12 + total_upu_xz_3
-    M_aa_yy = J_star_t_14 - total_upu_yy_3
+    M_aa_yy = J_star_t_14 + total_upu_yy_3
     M_aa_yz = J_star_t_15 - total_upu_yz_3
     M_aa_zz = J_star_t_17 + total_upu_zz_3
     # (M5) translational part of Z
@@ -1392,7 +1335,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 1650 mul, 1065 add, 12 div, 6 sqrt, 0 trig
+# M: 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1464,12 +1407,13 @@ def _M_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz, branch_1,
-        branch_2, h_3_x, h_3_y, h_3_z, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
-        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z, volume_c_t,
+        branch_2, h_3_x, h_3_y, h_3_z, n_c1_t, size, size_t_3, upu_base_frame_xx,
+        upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
+        upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
+        upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
+        upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (upu-K1) from the base point to the connection point
@@ -1536,12 +1480,12 @@ def _M_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -1568,10 +1512,10 @@ def _M_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
-    # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
+    w_1_t_4 = inv_w_1_t_25*n_c1_z
+    # (upu-A19) coefficient of the acceleration in: angular acceleration of link 1
     d_alpha_1_t = inv_w_1_t_25*s_2
     d_alpha_1_t_2 = c_2*inv_w_1_t_25
     # (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
@@ -1580,8 +1524,6 @@ def _M_upu(c, k, x, s, f):
     d_phi_3_t = h_3_z*inv_root_2
     d_phi_3_t_2 = d_alpha_1_t_2*h_3_y
     # (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
-    d_Gamma_1_t = c_2*h_3_y
-    d_Gamma_1_y = s_2*(J_group_2_xz*inv_root_2 - h_3_y) - J_group_2_yz*c_2*inv_root_2
     d_Gamma_1_z = (
     s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 - d_acc_3_t*h_3_z) -
         c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 - d_acc_3_t*h_3_x -
@@ -1591,7 +1533,7 @@ def _M_upu(c, k, x, s, f):
     d_G_t = (
     inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 - d_alpha_1_t*h_3_y*root_2)
     )
-    # (upu-N50) inertia of the leg at the connection point, without the mass gathered there
+    # (upu-N54) inertia of the leg at the connection point, without the mass gathered there
     Q_t = (
     inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass + h_3_x*inv_root_2)) -
         upu_link3_mass
@@ -1632,42 +1574,42 @@ def _M_upu(c, k, x, s, f):
     )
     Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
     Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
-    # (upu-V15) moment part of reciprocal wrench 1
+    # (upu-V14) moment part of reciprocal wrench 1
     o_1_x = end_p1_r3_y*w_1_t_4
     o_1_y = end_p1_r3_x*w_1_t_4
-    o_1_y_2 = w_1_t_4*(c_2*end_p1_r3_y - end_p1_r3_x*s_2)
-    o_1_z = n_m1_r0_y*w_1_t_4
-    # (upu-A17) coefficient of the acceleration in: angular acceleration of link 1
-    d0_alpha_1_t = o_1_y_2*s_2
-    d0_alpha_1_t_2 = c_2*o_1_y_2
-    d0_alpha_1_t_3 = o_1_z*s_2
-    d0_alpha_1_t_4 = c_2*o_1_z
-    _x = d0_alpha_1_t_3*s_2 - c_2*d0_alpha_1_t
-    _y = -c_2*d0_alpha_1_t_3 - d0_alpha_1_t*s_2
-    _x_2 = c_2*d0_alpha_1_t_2 - d0_alpha_1_t_4*s_2
-    _y_2 = c_2*d0_alpha_1_t_4 + d0_alpha_1_t_2*s_2
+    # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
+    d0_alpha_1_xx = o_1_x*s_2
+    d0_alpha_1_xy = o_1_y*s_2
+    d0_alpha_1_yx = c_2*o_1_x
+    d0_alpha_1_yy = c_2*o_1_y
     # (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3, less gravity
-    d0_acc_3_t = _x_2*root_2
-    d0_acc_3_t_2 = _y_2*root_2
+    d0_acc_3_t = d0_alpha_1_yx*root_2
+    d0_acc_3_t_2 = d0_alpha_1_yy*root_2
     # (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its reference point
-    d0_phi_3_t = _x_2*h_3_y
-    d0_phi_3_t_2 = _y_2*h_3_y
+    d0_phi_3_t = d0_alpha_1_yx*h_3_y
+    d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y
     # (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia and weight
     d0_Gamma_1_x = (
-    s_2*(J_group_2_xx*_x + J_group_2_xy*_x_2 + d0_acc_3_t*h_3_z) - c_2*(J_group_2_xy*_x +
-        J_group_2_yy*_x_2 + d0_acc_3_t*h_3_x - root_2*(-_x*h_3_z - _x_2*h_3_x -
-        d0_acc_3_t*upu_link3_mass))
+    s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z - J_group_2_xx*d0_alpha_1_xx) -
+        c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x - J_group_2_xy*d0_alpha_1_xx -
+        root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass - d0_alpha_1_yx*h_3_x))
     )
     d0_Gamma_1_y = (
-    s_2*(J_group_2_xx*_y + J_group_2_xy*_y_2 + d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*_y +
-        J_group_2_yy*_y_2 + d0_acc_3_t_2*h_3_x - root_2*(-_y*h_3_z - _y_2*h_3_x -
-        d0_acc_3_t_2*upu_link3_mass))
+    s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_z) -
+        c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy - d0_acc_3_t_2*h_3_x -
+        root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x - d0_alpha_1_xy*h_3_z))
     )
     # (upu-N39) coefficient of the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     d0_G_t = d0_Gamma_1_x*inv_w_1_t_25
     d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25
-    d0_G_t_3 = inv_root_2*(J_group_2_xz*_x + J_group_2_yz*_x_2 - _x*h_3_y*root_2)
-    d0_G_t_4 = inv_root_2*(J_group_2_xz*_y + J_group_2_yz*_y_2 - _y*h_3_y*root_2)
+    d0_G_t_3 = (
+    inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2 -
+        J_group_2_xz*d0_alpha_1_xx)
+    )
+    d0_G_t_4 = (
+    inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy -
+        d0_alpha_1_xy*h_3_y*root_2)
+    )
     # (M2) coupling block of M
     M_ta_t = Q_t_13*q_in_base_z
     M_ta_t_2 = Q_t_14*q_in_base_y
@@ -1680,180 +1622,132 @@ def _M_upu(c, k, x, s, f):
     M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y
     M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x
     M_ta_t_11 = M_ta_t_6 - M_ta_t_2
-    # (upu-N47) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
-    _x_3 = c_2*d0_phi_3_t + d0_G_t_3*s_2
-    _y_3 = c_2*d0_G_t_3 - d0_phi_3_t*s_2
-    _x_4 = c_2*d0_phi_3_t_2 + d0_G_t_4*s_2
-    _y_4 = c_2*d0_G_t_4 - d0_phi_3_t_2*s_2
-    _x_5 = -_x_3*c_2 - _x_4*s_2
-    _y_5 = _x_3*s_2 - _x_4*c_2
-    _x_6 = -_y_3*c_2 - _y_4*s_2
-    _y_6 = _y_3*s_2 - _y_4*c_2
-    _x_7 = c_2*d0_G_t + d0_G_t_2*s_2
-    _y_7 = c_2*d0_G_t_2 - d0_G_t*s_2
-    _x_8 = -_x_5*s_1 - _x_7*c_1
-    _y_8 = _x_7*s_1 - _x_5*c_1
-    _x_9 = -_y_5*s_1 - _y_7*c_1
-    _y_9 = _y_7*s_1 - _y_5*c_1
-    d0_c_t = _x_8*s_1
-    d0_c_t_2 = _x_8*c_1
-    d0_c_t_3 = _y_8*s_1
-    d0_c_t_4 = _y_8*c_1
-    d0_c_t_5 = _x_6*s_1
-    d0_c_t_6 = _x_6*c_1
-    _x_10 = -d0_c_t*upu_base_frame_xx - d0_c_t_3*upu_base_frame_xy - d0_c_t_5*upu_base_frame_xz
-    _y_10 = -d0_c_t*upu_base_frame_yx - d0_c_t_3*upu_base_frame_yy - d0_c_t_5*upu_base_frame_yz
-    _z = -d0_c_t*upu_base_frame_zx - d0_c_t_3*upu_base_frame_zy - d0_c_t_5*upu_base_frame_zz
-    _x_11 = -d0_c_t_2*upu_base_frame_xx - d0_c_t_4*upu_base_frame_xy - d0_c_t_6*upu_base_frame_xz
-    _y_11 = -d0_c_t_2*upu_base_frame_yx - d0_c_t_4*upu_base_frame_yy - d0_c_t_6*upu_base_frame_yz
-    _z_2 = -d0_c_t_2*upu_base_frame_zx - d0_c_t_4*upu_base_frame_zy - d0_c_t_6*upu_base_frame_zz
-    _x_12 = _x_9*upu_base_frame_xx + _y_6*upu_base_frame_xz + _y_9*upu_base_frame_xy
-    _y_12 = _x_9*upu_base_frame_yx + _y_6*upu_base_frame_yz + _y_9*upu_base_frame_yy
-    _z_3 = _x_9*upu_base_frame_zx + _y_6*upu_base_frame_zz + _y_9*upu_base_frame_zy
-    _y_13 = _x_10*upu_base_frame_yx + _x_11*upu_base_frame_yy + _x_12*upu_base_frame_yz
-    _z_4 = _x_10*upu_base_frame_zx + _x_11*upu_base_frame_zy + _x_12*upu_base_frame_zz
-    _x_13 = _y_10*upu_base_frame_xx + _y_11*upu_base_frame_xy + _y_12*upu_base_frame_xz
-    _y_14 = _y_10*upu_base_frame_yx + _y_11*upu_base_frame_yy + _y_12*upu_base_frame_yz
-    _z_5 = _y_10*upu_base_frame_zx + _y_11*upu_base_frame_zy + _y_12*upu_base_frame_zz
-    _x_14 = _z*upu_base_frame_xx + _z_2*upu_base_frame_xy + _z_3*upu_base_frame_xz
-    _y_15 = _z*upu_base_frame_yx + _z_2*upu_base_frame_yy + _z_3*upu_base_frame_yz
-    _z_6 = _z*upu_base_frame_zx + _z_2*upu_base_frame_zy + _z_3*upu_base_frame_zz
+    # (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and without the mass at the connection point
+    d0_c_in_base_x = (
+    -axis_x_upu_axes2_x*d0_phi_3_t - axis_y_upu_axes2_in_base_x*d0_G_t_3 -
+        axis_z_upu_axes2_in_base_x*d0_G_t
+    )
+    d0_c_in_base_y = (
+    -axis_x_upu_axes2_y*d0_phi_3_t - axis_y_upu_axes2_in_base_y*d0_G_t_3 -
+        axis_z_upu_axes2_in_base_y*d0_G_t
+    )
+    d0_c_in_base_z = (
+    -axis_x_upu_axes2_z*d0_phi_3_t - axis_y_upu_axes2_in_base_z*d0_G_t_3 -
+        axis_z_upu_axes2_in_base_z*d0_G_t
+    )
+    d0_c_in_base_x_2 = (
+    axis_x_upu_axes2_x*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_x*d0_G_t_4 -
+        axis_z_upu_axes2_in_base_x*d0_G_t_2
+    )
+    d0_c_in_base_y_2 = (
+    axis_x_upu_axes2_y*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_y*d0_G_t_4 -
+        axis_z_upu_axes2_in_base_y*d0_G_t_2
+    )
+    d0_c_in_base_z_2 = (
+    axis_x_upu_axes2_z*d0_phi_3_t_2 - axis_y_upu_axes2_in_base_z*d0_G_t_4 -
+        axis_z_upu_axes2_in_base_z*d0_G_t_2
+    )
+    d0_c_in_base_y_3 = (
+    axis_x_upu_axes2_y*d0_c_in_base_x + axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2
+    )
+    d0_c_in_base_z_3 = (
+    axis_x_upu_axes2_z*d0_c_in_base_x + axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2
+    )
+    d0_c_in_base_x_3 = (
+    axis_x_upu_axes2_x*d0_c_in_base_y + axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2
+    )
+    d0_c_in_base_y_4 = (
+    axis_x_upu_axes2_y*d0_c_in_base_y + axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2
+    )
+    d0_c_in_base_z_4 = (
+    axis_x_upu_axes2_z*d0_c_in_base_y + axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2
+    )
+    d0_c_in_base_x_4 = (
+    axis_x_upu_axes2_x*d0_c_in_base_z + axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2
+    )
+    d0_c_in_base_y_5 = (
+    axis_x_upu_axes2_y*d0_c_in_base_z + axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2
+    )
+    d0_c_in_base_z_5 = (
+    axis_x_upu_axes2_z*d0_c_in_base_z + axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2
+    )
     # (M2) coupling block of M
     M_ta_t_12 = (
-    M_ta_t + _x_10*upu_base_frame_xx + _x_11*upu_base_frame_xy + _x_12*upu_base_frame_xz -
+    M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x + axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 -
         M_ta_t_2
     )
-    M_ta_t_13 = M_ta_t_3 - _y_13
-    M_ta_t_14 = M_ta_t_4 + _z_4
-    M_ta_t_15 = M_ta_t_5 + _x_13
-    M_ta_t_16 = M_ta_t_7 - _y_14
-    M_ta_t_17 = M_ta_t_8 + _z_5
-    M_ta_t_18 = M_ta_t_9 + _x_14
-    M_ta_t_19 = M_ta_t_10 - _y_15
-    M_ta_t_20 = M_ta_t_11 - _z_6
-    # (upu-N43) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d0_G_m_t = d0_Gamma_1_x*o_1_x
-    d0_G_m_t_2 = d0_Gamma_1_y*o_1_x
-    d0_G_m_t_3 = d0_Gamma_1_x*o_1_y
-    d0_G_m_t_4 = d0_Gamma_1_y*o_1_y
-    # (upu-N44) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    d_G_m_t = d_Gamma_1_t*o_1_x
-    d_G_m_t_2 = d_Gamma_1_y*o_1_x
-    d_G_m_t_3 = d_Gamma_1_z*o_1_x
-    d_G_m_t_4 = d_Gamma_1_t*o_1_y
-    d_G_m_t_5 = d_Gamma_1_y*o_1_y
-    d_G_m_t_6 = d_Gamma_1_z*o_1_y
-    # (upu-N53) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_15 = c_2*d_G_m_t - d_G_m_t_4*s_2
-    _y_16 = -c_2*d_G_m_t_4 - d_G_m_t*s_2
-    _x_16 = d_G_m_t_5*s_2 - c_2*d_G_m_t_2
-    _y_17 = c_2*d_G_m_t_5 + d_G_m_t_2*s_2
-    _x_17 = d_G_m_t_6*s_2 - c_2*d_G_m_t_3
-    _y_18 = c_2*d_G_m_t_6 + d_G_m_t_3*s_2
-    _x_18 = -_x_15*c_2 - _x_16*s_2
-    _y_19 = _x_15*s_2 - _x_16*c_2
-    _x_19 = -_y_16*c_2 - _y_17*s_2
-    _y_20 = _y_16*s_2 - _y_17*c_2
-    d_c_m_t = _x_17*s_1
-    d_c_m_t_2 = _x_17*c_1
-    d_c_m_t_3 = _x_18*s_1
-    d_c_m_t_4 = _x_18*c_1
-    d_c_m_t_5 = _y_19*s_1
-    d_c_m_t_6 = _y_19*c_1
-    _x_20 = c_1*d_c_m_t + d_c_m_t_3*s_1
-    _y_21 = c_1*d_c_m_t_3 - d_c_m_t*s_1
-    _x_21 = c_1*d_c_m_t_2 + d_c_m_t_4*s_1
-    _y_22 = c_1*d_c_m_t_4 - d_c_m_t_2*s_1
-    _x_22 = -_x_19*s_1 - _y_18*c_1
-    _y_23 = _y_18*s_1 - _x_19*c_1
-    _x_23 = _x_20*upu_base_frame_xx + _x_21*upu_base_frame_xy + _x_22*upu_base_frame_xz
-    _y_24 = _x_20*upu_base_frame_yx + _x_21*upu_base_frame_yy + _x_22*upu_base_frame_yz
-    _z_7 = _x_20*upu_base_frame_zx + _x_21*upu_base_frame_zy + _x_22*upu_base_frame_zz
-    _x_24 = _y_21*upu_base_frame_xx + _y_22*upu_base_frame_xy + _y_23*upu_base_frame_xz
-    _y_25 = _y_21*upu_base_frame_yx + _y_22*upu_base_frame_yy + _y_23*upu_base_frame_yz
-    _z_8 = _y_21*upu_base_frame_zx + _y_22*upu_base_frame_zy + _y_23*upu_base_frame_zz
-    _x_25 = _y_20*upu_base_frame_xz - d_c_m_t_5*upu_base_frame_xx - d_c_m_t_6*upu_base_frame_xy
-    _y_26 = _y_20*upu_base_frame_yz - d_c_m_t_5*upu_base_frame_yx - d_c_m_t_6*upu_base_frame_yy
-    _z_9 = _y_20*upu_base_frame_zz - d_c_m_t_5*upu_base_frame_zx - d_c_m_t_6*upu_base_frame_zy
-    _x_26 = _x_23*upu_base_frame_xx + _x_24*upu_base_frame_xy + _x_25*upu_base_frame_xz
-    _y_27 = _x_23*upu_base_frame_yx + _x_24*upu_base_frame_yy + _x_25*upu_base_frame_yz
-    _z_10 = _x_23*upu_base_frame_zx + _x_24*upu_base_frame_zy + _x_25*upu_base_frame_zz
-    _x_27 = _y_24*upu_base_frame_xx + _y_25*upu_base_frame_xy + _y_26*upu_base_frame_xz
-    # (upu-N52) coefficient of the acceleration in: moment of the leg on the platform without actuation
-    _x_28 = d0_G_m_t_3*s_2 - c_2*d0_G_m_t
-    _y_28 = c_2*d0_G_m_t_3 + d0_G_m_t*s_2
-    _x_29 = d0_G_m_t_4*s_2 - c_2*d0_G_m_t_2
-    _y_29 = c_2*d0_G_m_t_4 + d0_G_m_t_2*s_2
-    _x_30 = -_x_28*c_2 - _x_29*s_2
-    _y_30 = _x_28*s_2 - _x_29*c_2
-    _x_31 = -_y_28*c_2 - _y_29*s_2
-    _y_31 = _y_28*s_2 - _y_29*c_2
-    d0_c_m_t = _x_30*s_1
-    d0_c_m_t_2 = _x_30*c_1
-    d0_c_m_t_3 = _y_30*s_1
-    d0_c_m_t_4 = _y_30*c_1
-    d0_c_m_t_5 = d0_c_m_t*s_1
-    d0_c_m_t_6 = c_1*d0_c_m_t
-    d0_c_m_t_7 = d0_c_m_t_2*s_1
-    d0_c_m_t_8 = c_1*d0_c_m_t_2
-    d0_c_m_t_9 = _x_31*s_1
-    d0_c_m_t_10 = _x_31*c_1
-    _x_32 = (
-    d0_c_m_t_5*upu_base_frame_xx + d0_c_m_t_7*upu_base_frame_xy - d0_c_m_t_9*upu_base_frame_xz
+    M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3
+    M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3
+    M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3
+    M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4
+    M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4
+    M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4
+    M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5
+    M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5
+    # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_t = d0_Gamma_1_x*w_1_t_4
+    d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4
+    # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_t = c_2*h_3_y*w_1_t_4
+    d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) - J_group_2_yz*c_2*inv_root_2)
+    d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4
+    # (upu-V5) direction 1 of the moment that the platform joint transmits
+    n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
+    n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
+    n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
+    # (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d_G_m1_in_base_x = (
+    axis_y_upu_axes2_in_base_x*d_G_m1_t_2 + axis_z_upu_axes2_in_base_x*d_G_m1_t_3 -
+        axis_x_upu_axes2_x*d_G_m1_t
     )
-    _y_32 = (
-    d0_c_m_t_5*upu_base_frame_yx + d0_c_m_t_7*upu_base_frame_yy - d0_c_m_t_9*upu_base_frame_yz
+    d_G_m1_in_base_y = (
+    axis_y_upu_axes2_in_base_y*d_G_m1_t_2 + axis_z_upu_axes2_in_base_y*d_G_m1_t_3 -
+        axis_x_upu_axes2_y*d_G_m1_t
     )
-    _x_33 = (
-    d0_c_m_t_6*upu_base_frame_xx + d0_c_m_t_8*upu_base_frame_xy - d0_c_m_t_10*upu_base_frame_xz
+    d_G_m1_in_base_z = (
+    axis_y_upu_axes2_in_base_z*d_G_m1_t_2 + axis_z_upu_axes2_in_base_z*d_G_m1_t_3 -
+        axis_x_upu_axes2_z*d_G_m1_t
     )
-    _y_33 = (
-    d0_c_m_t_6*upu_base_frame_yx + d0_c_m_t_8*upu_base_frame_yy - d0_c_m_t_10*upu_base_frame_yz
-    )
-    _x_34 = _y_31*upu_base_frame_xz - d0_c_m_t_3*upu_base_frame_xx - d0_c_m_t_4*upu_base_frame_xy
-    _y_34 = _y_31*upu_base_frame_yz - d0_c_m_t_3*upu_base_frame_yx - d0_c_m_t_4*upu_base_frame_yy
-    _z_11 = (
-    upu_base_frame_zx*(d0_c_m_t_5*upu_base_frame_zx + d0_c_m_t_7*upu_base_frame_zy -
-        d0_c_m_t_9*upu_base_frame_zz) + upu_base_frame_zy*(d0_c_m_t_6*upu_base_frame_zx +
-        d0_c_m_t_8*upu_base_frame_zy - d0_c_m_t_10*upu_base_frame_zz) +
-        upu_base_frame_zz*(_y_31*upu_base_frame_zz - d0_c_m_t_3*upu_base_frame_zx -
-        d0_c_m_t_4*upu_base_frame_zy)
-    )
+    # (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x
+    d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x
+    d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x
+    d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y
+    # (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the leg's inertia and weight along all freedoms
+    d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t + axis_y_upu_axes2_in_base_y*d0_G_m1_t_2
+    d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t + axis_y_upu_axes2_in_base_z*d0_G_m1_t_2
     # (M3) rotational block of M
     M_aa_t = (
-    M_ta_t_5*q_in_base_z + _x_13*q_in_base_z + _y_27*q_in_base_z - M_ta_t_9*q_in_base_y -
-        _x_14*q_in_base_y - _x_32*upu_base_frame_xx - _x_33*upu_base_frame_xy -
-        _x_34*upu_base_frame_xz - _z_10*q_in_base_y
+    M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z + d_G_m_xz*q_in_base_y +
+        n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t + axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) -
+        M_ta_t_9*q_in_base_y - d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z
     )
     M_aa_t_2 = (
-    M_ta_t_7*q_in_base_z + _x_26*q_in_base_z + _x_32*upu_base_frame_yx + _x_33*upu_base_frame_yy +
-        _x_34*upu_base_frame_yz + _y_15*q_in_base_y - M_ta_t_10*q_in_base_y - _y_14*q_in_base_z -
-        _z_10*q_in_base_x
+    M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x + d0_c_in_base_y_4*q_in_base_z +
+        d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z - d0_c_in_base_y_5*q_in_base_y -
+        d_G_m_xz*q_in_base_x
     )
     M_aa_t_3 = (
-    M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + _x_26*q_in_base_y + _z_5*q_in_base_z -
-        _x_32*upu_base_frame_zx - _x_33*upu_base_frame_zy - _x_34*upu_base_frame_zz -
-        _y_27*q_in_base_x - _z_6*q_in_base_y
+    M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z + d0_G_m1_in_base_z*n_m1_in_base_x +
+        d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x - d0_c_in_base_z_5*q_in_base_y -
+        d_G_m_xx*q_in_base_y
     )
     M_aa_t_4 = (
-    M_ta_t_10*q_in_base_x + _x_27*q_in_base_z + _y_13*q_in_base_z + _y_32*upu_base_frame_yx +
-        _y_33*upu_base_frame_yy + _y_34*upu_base_frame_yz - M_ta_t_3*q_in_base_z -
-        _y_15*q_in_base_x - q_in_base_x*(_y_24*upu_base_frame_zx + _y_25*upu_base_frame_zy +
-        _y_26*upu_base_frame_zz)
+    M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y + d0_c_in_base_y_5*q_in_base_x +
+        d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x - d0_c_in_base_y_3*q_in_base_z -
+        d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x
     )
     M_aa_t_5 = (
-    M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + _y_32*upu_base_frame_zx +
-        _y_33*upu_base_frame_zy + _y_34*upu_base_frame_zz + _z_4*q_in_base_z +
-        q_in_base_x*(_y_24*upu_base_frame_yx + _y_25*upu_base_frame_yy + _y_26*upu_base_frame_yz)
-        - _x_27*q_in_base_y - _z_6*q_in_base_x
+    M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z + d0_c_in_base_z_3*q_in_base_z +
+        d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y - d0_c_in_base_z_5*q_in_base_x -
+        d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x
     )
     M_aa_t_6 = (
-    M_ta_t_4*q_in_base_y + _z_4*q_in_base_y + q_in_base_y*(_z_7*upu_base_frame_xx +
-        _z_8*upu_base_frame_xy + _z_9*upu_base_frame_xz) - _z_11 - M_ta_t_8*q_in_base_x -
-        _z_5*q_in_base_x - q_in_base_x*(_z_7*upu_base_frame_yx + _z_8*upu_base_frame_yy +
-        _z_9*upu_base_frame_yz)
+    M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z + d0_c_in_base_z_3*q_in_base_y +
+        d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x - M_ta_t_8*q_in_base_x -
+        d0_c_in_base_z_4*q_in_base_x - d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
@@ -1886,9 +1780,9 @@ def _M_after(c, s, t, f):
     M_ta_zy = total_upu_zy - h_star_in_base_x
     # (M3) rotational block of M
     M_aa_xx = J_star_t_10 + total_upu_xx_3
-    M_aa_xy = J_star_t_11 - total_upu_xy_3
+    M_aa_xy = J_star_t_11 + total_upu_xy_3
     M_aa_xz = J_star_t_12 + total_upu_xz_3
-    M_aa_yy = J_star_t_14 - total_upu_yy_3
+    M_aa_yy = J_star_t_14 + total_upu_yy_3
     M_aa_yz = J_star_t_15 - total_upu_yz_3
     M_aa_zz = J_star_t_17 + total_upu_zz_3
     ok = True
@@ -1901,7 +1795,7 @@ def _M_after(c, s, t, f):
     )
 
 
-# Z: 828 mul, 606 add, 12 div, 6 sqrt, 0 trig
+# Z: 849 mul, 618 add, 12 div, 6 sqrt, 0 trig
 def _Z_before(c, X, V, f):
     (
     J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3,
@@ -1993,13 +1887,13 @@ def _Z_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size,
+        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size,
         size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
         upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
         upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
         upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
         upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+        upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2070,12 +1964,12 @@ def _Z_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2102,12 +1996,8 @@ def _Z_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
-    # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_4
-    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2115,7 +2005,29 @@ def _Z_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
+    # (upu-V17) rate at which the joints turn along moment direction 1
+    eta_1 = (
+    omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y) +
+        omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y) +
+        omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y)
+    )
+    # (upu-V1) velocity of the connection point
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
+    qd_1_t = (
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
+    )
+    qd_1_t_2 = (
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c1_z)
+    )
+    # (upu-V21) angular velocity of link 1
+    omega_1_t = qd_1_t_2*s_2
+    omega_1_t_2 = c_2*qd_1_t_2
+    # (upu-A8) rate of moment direction 1
     omega_tip_x = (
     axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
     )
@@ -2127,44 +2039,26 @@ def _Z_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
-    # (upu-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
-    )
-    # (upu-V18) rate of joint 1
-    qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-        S_dot_z*axis_y_upu_axes2_in_base_z)
-    )
-    qd_1 = (
-    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
-    )
-    # (upu-V21) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (upu-A8) rate of moment direction 1
     nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
     nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
     # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_2
-    zeta_2_y = omega_1_t*qd_1_t_2
+    zeta_2_x = omega_1_t_2*qd_1_t
+    zeta_2_y = omega_1_t*qd_1_t
     # (upu-A9) bias of the angular acceleration along moment direction 1
     nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
     nu_1_t_2 = (
-    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 -
+    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
         end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
     )
     nu_1 = -nu_1_t - nu_1_t_2
     # (upu-V23) centripetal tensor of link 2
     W_2_t = omega_1_t*omega_1_t
     W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_2*qd_1_t_2
+    W_2_t_3 = qd_1_t*qd_1_t
     W_2_xy = omega_1_t*omega_1_t_2
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
-    bias_t_2 = bias_t*qd_1_t_2
+    bias_t_2 = bias_t*qd_1_t
     bias_t_3 = bias_t*omega_1_t_2
     bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
     # (upu-A1) centripetal acceleration of the connection point
@@ -2176,20 +2070,20 @@ def _Z_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
         axis_z_upu_axes2_in_base_z*u_1_z - bias_z
     )
-    # (upu-A11) remainder without the acceleration in: acceleration of joint 1
+    # (upu-A12) remainder without the acceleration in: acceleration of joint 1
     qdd_1_o_t = (
     axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y +
         axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
     )
     qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-    qdd_1_o = inv_w_1_t_25*rel_o_z + nu_1*w_1_t_4
-    # (upu-A19) remainder without the acceleration in: angular acceleration of link 1
-    alpha_1_o_t = qdd_1_o*s_2
-    alpha_1_o_t_2 = c_2*qdd_1_o
-    # (upu-A23) remainder without the acceleration in: angular acceleration of link 2
+    qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1)
+    # (upu-A20) remainder without the acceleration in: angular acceleration of link 1
+    alpha_1_o_t = qdd_1_o_t_3*s_2
+    alpha_1_o_t_2 = c_2*qdd_1_o_t_3
+    # (upu-A24) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (upu-A25) acceleration tensor of link 2
+    # (upu-A26) acceleration tensor of link 2
     B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t_2
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x
@@ -2233,7 +2127,8 @@ def _Z_upu(c, k, x, s, f):
     # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
     G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
-    # (upu-N55) velocity and gravity terms of the leg force
+    G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z
+    # (upu-N59) velocity and gravity terms of the leg force
     U_in_base_x = (
     G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
         axis_x_upu_axes2_x*f_3_o_x
@@ -2246,23 +2141,23 @@ def _Z_upu(c, k, x, s, f):
     G_o_t*axis_y_upu_axes2_in_base_z + G_o_t_2*axis_z_upu_axes2_in_base_z +
         axis_x_upu_axes2_z*f_3_o_x
     )
-    # (upu-N45) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_o_t = N_2_o_r0_y*o_1_x
-    G_m_o_t_2 = N_2_o_r0_y*o_1_y
+    # (upu-N49) remainder without the acceleration in: moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_o_x = G_o_t_3*end_p1_r3_y
+    G_m_o_y = G_o_t_3*end_p1_r3_x
     # (M7) rotational part of Z
     Z_a_t = (
-    G_m_o_t_2*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_t*axis_x_upu_axes2_x -
+    G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y - G_m_o_x*axis_x_upu_axes2_x -
         U_in_base_y*q_in_base_z
     )
     Z_a_t_2 = (
-    G_m_o_t_2*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_t*axis_x_upu_axes2_y -
+    G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z - G_m_o_x*axis_x_upu_axes2_y -
         U_in_base_z*q_in_base_x
     )
     Z_a_t_3 = (
-    G_m_o_t_2*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_t*axis_x_upu_axes2_z -
+    G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_x*axis_x_upu_axes2_z -
         U_in_base_x*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
 
 
@@ -2367,7 +2262,7 @@ def _H_upu(c, k, x, s, f):
     c_1 = inv_root_1*py_1
     # (upu-K7) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2448,12 +2343,12 @@ def _Hk_before(c, X, f):
 def _Hk_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
+        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (upu-K1) from the base point to the connection point
@@ -2520,10 +2415,10 @@ def _Hk_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    volume_c_t = root_1*root_2
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2538,31 +2433,31 @@ def _Hk_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_z = (
     upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
     )
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
+    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
+    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z -
         end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c1_t_4*q_in_base_y
     )
     Hk_a_1_y = (
-    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x -
         end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c1_t_2*q_in_base_z
     )
     Hk_a_1_z = (
-    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y -
         end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c1_t_3*q_in_base_x
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size)
-    return (ok, (), (-n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size)
+    return (ok, (), (-n_c1_t_2, -n_c1_t_3, -n_c1_t_4, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),)
 
 
-# constraint_bias: 483 mul, 306 add, 12 div, 6 sqrt, 0 trig
+# constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig
 def _constraint_bias_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -2621,12 +2516,12 @@ def _constraint_bias_before(c, X, V, f):
 def _constraint_bias_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
+        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2697,12 +2592,12 @@ def _constraint_bias_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2729,9 +2624,7 @@ def _constraint_bias_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2739,7 +2632,29 @@ def _constraint_bias_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
+    # (upu-V17) rate at which the joints turn along moment direction 1
+    eta_1 = (
+    omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y) +
+        omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y) +
+        omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y)
+    )
+    # (upu-V1) velocity of the connection point
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
+    qd_1_t = (
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
+    )
+    qd_1_t_2 = (
+    (S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c1_z)/w_1_t_3
+    )
+    # (upu-V21) angular velocity of link 1
+    omega_1_t = qd_1_t_2*s_2
+    omega_1_t_2 = c_2*qd_1_t_2
+    # (upu-A8) rate of moment direction 1
     omega_tip_x = (
     axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
     )
@@ -2751,32 +2666,14 @@ def _constraint_bias_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = end_p1_r3_y*omega_tip_x*w_1_t_4 - end_p1_r3_x*omega_tip_y*w_1_t_4
-    # (upu-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
-    )
-    # (upu-V18) rate of joint 1
-    qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-        S_dot_z*axis_y_upu_axes2_in_base_z)
-    )
-    qd_1 = (
-    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
-    )
-    # (upu-V21) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (upu-A8) rate of moment direction 1
     nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
     nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
     # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_y = omega_1_t*qd_1_t_2
+    zeta_2_y = omega_1_t*qd_1_t
     # (upu-A9) bias of the angular acceleration along moment direction 1
-    nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t_2 - end_p1_r3_x*zeta_2_y
+    nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y
     nu_1_t_2 = (
-    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 -
+    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
         end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
     )
     nu_1 = -nu_1_t - nu_1_t_2
@@ -2789,8 +2686,8 @@ def _constraint_bias_upu(c, k, x, s, f):
         axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z
     )
     # (M11) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1 = nu_1 - n_c_z*rel_o_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    gamma_c1 = nu_1 - n_c1_z*rel_o_z
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (gamma_c1,),)
 
 
@@ -2930,13 +2827,13 @@ def _required_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size,
+        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size,
         size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
         upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
         upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
         upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
         upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+        upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3008,12 +2905,12 @@ def _required_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -3040,12 +2937,8 @@ def _required_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
-    # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_4
-    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -3053,7 +2946,15 @@ def _required_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
+    qd_1_t = (
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
+    )
+    # (upu-A8) rate of moment direction 1
     omega_tip_x = (
     axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
     )
@@ -3065,46 +2966,11 @@ def _required_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
-    # (upu-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
-    )
-    # (upu-V18) rate of joint 1
-    qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-        S_dot_z*axis_y_upu_axes2_in_base_z)
-    )
-    qd_1 = (
-    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
-    )
-    # (upu-V21) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (upu-A8) rate of moment direction 1
-    nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-    nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-    # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_2
-    zeta_2_y = omega_1_t*qd_1_t_2
-    # (upu-A9) bias of the angular acceleration along moment direction 1
-    nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
-    nu_1_t_2 = (
-    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 -
-        end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
-    )
-    nu_1 = -nu_1_t - nu_1_t_2
     # (upu-V23) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_2*qd_1_t_2
-    W_2_xy = omega_1_t*omega_1_t_2
+    W_2_t = qd_1_t*qd_1_t
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
-    bias_t_2 = bias_t*qd_1_t_2
-    bias_t_3 = bias_t*omega_1_t_2
-    bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
+    bias_t_2 = bias_t*qd_1_t
     # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
@@ -3114,23 +2980,52 @@ def _required_upu(c, k, x, s, f):
     H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
     H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
     H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
+    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
+    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
-        - n_c_t_3*q_in_base_y
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
+        - n_c1_t_4*q_in_base_y
     )
     Hk_a_1_y = (
-    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
-        - n_c_t*q_in_base_z
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
+        - n_c1_t_2*q_in_base_z
     )
     Hk_a_1_z = (
-    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y -
-        n_c_t_2*q_in_base_x
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y
+        - n_c1_t_3*q_in_base_x
     )
+    # (upu-V18) rate of joint 1
+    qd_1_t_2 = (
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*omega_tip_x -
+        end_p1_r3_x*omega_tip_y))
+    )
+    # (upu-V21) angular velocity of link 1
+    omega_1_t = qd_1_t_2*s_2
+    omega_1_t_2 = c_2*qd_1_t_2
+    # (upu-A8) rate of moment direction 1
+    nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
+    nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
+    # (upu-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_x = omega_1_t_2*qd_1_t
+    zeta_2_y = omega_1_t*qd_1_t
+    # (upu-A9) bias of the angular acceleration along moment direction 1
+    nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
+    nu_1_t_2 = (
+    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
+        end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+    )
+    nu_1 = -nu_1_t - nu_1_t_2
+    # (upu-A10) acceleration with which the joints turn along moment direction 1
+    etad_1_t = (
+    end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+        alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
+    )
+    etad_1 = nu_1 - etad_1_t
     # (upu-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -3139,31 +3034,33 @@ def _required_upu(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+    # (upu-V23) centripetal tensor of link 2
+    W_2_t_2 = omega_1_t*omega_1_t
+    W_2_t_3 = omega_1_t_2*omega_1_t_2
+    W_2_xy = omega_1_t*omega_1_t_2
+    # (upu-A5) acceleration of the connection point at zero joint accelerations
+    bias_t_3 = bias_t*omega_1_t_2
+    bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
     # (upu-A6) acceleration of the connection point left to the joint accelerations
     rel_z = (
     S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
         S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z
     )
-    # (upu-A10) acceleration of joint 1
+    # (upu-A11) acceleration of joint 1
     qdd_1_t = (
-    o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
-        o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x + alpha_y*axis_y_upu_axes2_in_base_y +
-        alpha_z*axis_y_upu_axes2_in_base_z)
-    )
-    qdd_1_t_2 = (
     S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
         S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
     )
-    qdd_1_t_3 = inv_root_2*qdd_1_t_2
-    qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t
-    # (upu-A16) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2*qdd_1
-    # (upu-A20) angular acceleration of link 2
+    qdd_1_t_2 = inv_root_2*qdd_1_t
+    qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z)
+    # (upu-A17) angular acceleration of link 1
+    alpha_1_t = qdd_1_t_3*s_2
+    alpha_1_t_2 = c_2*qdd_1_t_3
+    # (upu-A21) angular acceleration of link 2
     alpha_2_x = alpha_1_t - zeta_2_x
     alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (upu-A24) acceleration tensor of link 2
-    B_2_xy = -2.0*W_2_xy - qdd_1_t_3
+    # (upu-A25) acceleration tensor of link 2
+    B_2_xy = -2.0*W_2_xy - qdd_1_t_2
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x - zeta_2_x
     # (upu-N3) acceleration of the reference point of link 3, less gravity
@@ -3171,26 +3068,27 @@ def _required_upu(c, k, x, s, f):
     S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z -
         g_r3_x
     )
-    acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y
+    acc_3_y = bias_t_2 + qdd_1_t - g_r3_y
     acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x
     # (upu-N11) inertia force of link 3 less its weight
-    f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-    f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_3 + h_3_z*(W_2_t + W_2_t_3) - alpha_1_t*h_3_y
-    f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t + W_2_t_2)
+    f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t + W_2_t_3)
+    f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) - alpha_1_t*h_3_y
+    f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 + W_2_t_3)
     # (upu-N18) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
-    B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_3 + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-        Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - acc_3_y*h_3_y -
+    B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
+        g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) - acc_3_y*h_3_y -
         acc_3_z*h_3_z
     )
     mu_2_y = (
-    B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx -
-        J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y
+    B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y + g_r1_x*h_2_x -
+        B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x -
+        g_r3_x*h_2_y
     )
     mu_2_z = (
-    J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t_3 + acc_3_x*h_3_z
-        + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z -
-        g_r3_y*h_2_x
+    J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t_2 +
+        acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
+        g_r3_x*h_2_z - g_r3_y*h_2_x
     )
     # (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_y = mu_2_y - f_3_z*root_2
@@ -3198,7 +3096,8 @@ def _required_upu(c, k, x, s, f):
     # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_3_y + inv_root_2*mu_2_z
     G_t_2 = N_2_r0_y*inv_w_1_t_25
-    # (upu-N46) leg force on the platform without actuation and without the mass at the connection point
+    G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z
+    # (upu-N50) leg force on the platform without actuation and without the mass at the connection point
     c_in_base_x = (
     -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x
     )
@@ -3208,27 +3107,27 @@ def _required_upu(c, k, x, s, f):
     c_in_base_z = (
     -G_t*axis_y_upu_axes2_in_base_z - G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x
     )
-    # (upu-N42) moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_t = N_2_r0_y*o_1_x
-    G_m_t_2 = N_2_r0_y*o_1_y
+    # (upu-N46) moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_x = G_t_3*end_p1_r3_y
+    G_m_y = G_t_3*end_p1_r3_x
     # (E5) moment that actuators and external wrench must give
     R_a_t = (
-    G_m_t*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y - G_m_t_2*axis_y_upu_axes2_in_base_x -
+    G_m_x*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y - G_m_y*axis_y_upu_axes2_in_base_x -
         c_in_base_y*q_in_base_z
     )
     R_a_t_2 = (
-    G_m_t*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z - G_m_t_2*axis_y_upu_axes2_in_base_y -
+    G_m_x*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z - G_m_y*axis_y_upu_axes2_in_base_y -
         c_in_base_z*q_in_base_x
     )
     R_a_t_3 = (
-    G_m_t*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x - G_m_t_2*axis_y_upu_axes2_in_base_z -
+    G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x - G_m_y*axis_y_upu_axes2_in_base_z -
         c_in_base_x*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (axis_x_upu_axes2_x,
-        axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2,
-        -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
+        axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c1_t_2,
+        -n_c1_t_3, -n_c1_t_4, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
     )
 
 
@@ -3336,7 +3235,7 @@ def _inverse_kinematics_upu(c, k, x, s, f):
     return (ok, (), (q_1, q_2, root_2,),)
 
 
-# joint_rates: 375 mul, 237 add, 12 div, 6 sqrt, 0 trig
+# joint_rates: 366 mul, 237 add, 12 div, 6 sqrt, 0 trig
 def _joint_rates_before(c, X, V, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3395,12 +3294,12 @@ def _joint_rates_before(c, X, V, f):
 def _joint_rates_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
+        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3470,12 +3369,12 @@ def _joint_rates_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -3502,37 +3401,32 @@ def _joint_rates_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
-    inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     # (upu-V1) velocity of the connection point
     S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
     S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x
-    # (upu-V18) rate of joint 1
-    qd_1_t = (
-    end_p1_r3_y*w_1_t_4*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-        axis_x_upu_axes2_z*omega_z) - end_p1_r3_x*w_1_t_4*(axis_y_upu_axes2_in_base_x*omega_x +
-        axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z)
-    )
-    # (upu-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
     # (upu-V18) rate of joint 1
-    qd_1_t_2 = (
+    qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
     )
-    qd_1 = (
-    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
+    qd_1_t_2 = (
+    S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x +
+        axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
+        end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
+        axis_y_upu_axes2_in_base_z*omega_z))
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
-    return (ok, (), (qd_1, qd_1_t_2, S_dot_tip_x,),)
+    qd_1_t_3 = qd_1_t_2/w_1_t_3
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    return (ok, (), (qd_1_t_3, qd_1_t, S_dot_tip_x,),)
 
 
-# joint_accelerations: 564 mul, 375 add, 12 div, 6 sqrt, 0 trig
+# joint_accelerations: 558 mul, 375 add, 12 div, 6 sqrt, 0 trig
 def _joint_accelerations_before(c, X, V, A, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3605,12 +3499,12 @@ def _joint_accelerations_before(c, X, V, A, f):
 def _joint_accelerations_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
+        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3682,12 +3576,12 @@ def _joint_accelerations_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -3714,12 +3608,8 @@ def _joint_accelerations_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
-    # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_4
-    o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -3727,7 +3617,15 @@ def _joint_accelerations_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
+    qd_1_t = (
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
+    )
+    # (upu-A8) rate of moment direction 1
     omega_tip_x = (
     axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
     )
@@ -3739,38 +3637,36 @@ def _joint_accelerations_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
-    # (upu-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
-    )
+    # (upu-A5) acceleration of the connection point at zero joint accelerations
+    bias_t = 2.0*S_dot_tip_x
     # (upu-V18) rate of joint 1
     qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-        S_dot_z*axis_y_upu_axes2_in_base_z)
-    )
-    qd_1 = (
     inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*omega_tip_x -
+        end_p1_r3_x*omega_tip_y))
     )
     # (upu-V21) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
+    omega_1_t = qd_1_t_2*s_2
+    omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
     nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
     nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
     # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_y = omega_1_t*qd_1_t_2
+    zeta_2_y = omega_1_t*qd_1_t
     # (upu-A9) bias of the angular acceleration along moment direction 1
-    nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t_2 - end_p1_r3_x*zeta_2_y
+    nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y
     nu_1_t_2 = (
-    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 -
+    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
         end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
     )
     nu_1 = -nu_1_t - nu_1_t_2
-    # (upu-A5) acceleration of the connection point at zero joint accelerations
-    bias_t = 2.0*S_dot_tip_x
-    bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
+    # (upu-A10) acceleration with which the joints turn along moment direction 1
+    etad_1_t = (
+    end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+        alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
+    )
+    etad_1 = nu_1 - etad_1_t
     # (upu-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -3779,31 +3675,28 @@ def _joint_accelerations_upu(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+    # (upu-A5) acceleration of the connection point at zero joint accelerations
+    bias_z = bias_t*omega_1_t_2 + 2.0*root_2*zeta_2_y
     # (upu-A6) acceleration of the connection point left to the joint accelerations
     rel_x = (
     S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z +
-        root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t_2*qd_1_t_2)
+        root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t*qd_1_t)
     )
     rel_z = (
     S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
         S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z
     )
-    # (upu-A10) acceleration of joint 1
+    # (upu-A11) acceleration of joint 1
     qdd_1_t = (
-    o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
-        o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x + alpha_y*axis_y_upu_axes2_in_base_y +
-        alpha_z*axis_y_upu_axes2_in_base_z)
-    )
-    qdd_1_t_2 = (
     inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
-        S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t*qd_1_t_2) + omega_1_t*omega_1_t_2
+        S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t*qd_1_t) + omega_1_t*omega_1_t_2
     )
-    qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
-    return (ok, (), (qdd_1, qdd_1_t_2, rel_x,),)
+    qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    return (ok, (), (qdd_1_t_2, qdd_1_t, rel_x,),)
 
 
-# constraints: 138 mul, 102 add, 3 div, 3 sqrt, 0 trig
+# constraints: 234 mul, 153 add, 9 div, 6 sqrt, 0 trig
 def _constraints_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3846,11 +3739,12 @@ def _constraints_before(c, X, f):
 def _constraints_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx,
-        upu_base_frame_yy, upu_base_frame_zx, upu_base_frame_zy, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+    branch_1, branch_2, n_c1_t, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (upu-K1) from the base point to the connection point
@@ -3874,6 +3768,17 @@ def _constraints_upu(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (upu-K5) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
+    # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
+    xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
+    # (upu-K13) squared amplitude
+    rho2_2 = rho2_1 + xi_1_t*xi_1_t
+    # (upu-K14) amplitude, with the sign of the branch
+    root_2 = branch_2*sqrt(rho2_2)
+    # (upu-K15) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/root_2
+    c_2 = inv_root_2*root_1
+    # (upu-K16) sine of the angle of joint 2 from its reference direction
+    s_2 = inv_root_2*xi_1_t
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     end_p1_r0_x = (
     upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -3889,12 +3794,30 @@ def _constraints_upu(c, k, x, s, f):
         upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
         R_zz*upu_base_frame_zy)
     )
+    end_p1_r0_z = (
+    upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
+        R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
+        R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
+        upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
+        R_zz*upu_base_frame_zz)
+    )
     # (upu-K6) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
+    c_1 = inv_root_1*py_1
+    # (upu-K7) sine of the angle of joint 1 from its reference direction
+    s_1 = inv_root_1*px_1
     # (upu-V5) direction 1 of the moment that the platform joint transmits
-    end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3)
-    return (ok, (), (-end_p1_r1_x,),)
+    end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
+    # (upu-V6) triple product of the velocity vectors
+    volume_c_t = root_1*root_2
+    # (M10) distance by which the leg misses the connection point, along a direction left out
+    phi_c1_t = (
+    root_2*(py_1*s_1 - c_1*px_1)*(-c_2*(end_p1_r0_z*s_2 - c_2*end_p1_r1_y) - s_2*(-c_2*end_p1_r0_z
+        - end_p1_r1_y*s_2))/volume_c_t
+    )
+    phi_c1 = c_1*end_p1_r0_x - phi_c1_t - end_p1_r0_y*s_1
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t)
+    return (ok, (), (phi_c1,),)
 
 
 # legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig
@@ -3971,13 +3894,13 @@ def _legs_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size,
+        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size,
         size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
         upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
         upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
         upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
         upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z, volume_c_t,
+        upu_platform_point_z,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -4049,12 +3972,12 @@ def _legs_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t_2 = root_1*root_2
+    volume_c_t = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
-    # (upu-V9) force part of reciprocal wrench 1
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_z = n_m1_r0_y*root_2/volume_c_t
+    # (upu-V8) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -4081,12 +4004,12 @@ def _legs_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c_z
-    # (upu-V15) moment part of reciprocal wrench 1
-    o_1_x = end_p1_r3_y*w_1_t_4
-    o_1_y = end_p1_r3_x*w_1_t_4
+    # (upu-V5) direction 1 of the moment that the platform joint transmits
+    n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
+    n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
+    n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -4094,7 +4017,15 @@ def _legs_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
+    S_dot_tip_x = (
+    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
+    )
     # (upu-V18) rate of joint 1
+    qd_1_t = (
+    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
+        S_dot_z*axis_y_upu_axes2_in_base_z)
+    )
+    # (upu-A8) rate of moment direction 1
     omega_tip_x = (
     axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z
     )
@@ -4106,59 +4037,49 @@ def _legs_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    qd_1_t = o_1_x*omega_tip_x - o_1_y*omega_tip_y
-    # (upu-V1) velocity of the connection point
-    S_dot_tip_x = (
-    S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
-    )
-    # (upu-V18) rate of joint 1
-    qd_1_t_2 = (
-    inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
-        S_dot_z*axis_y_upu_axes2_in_base_z)
-    )
-    qd_1 = (
-    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z) - qd_1_t
-    )
-    # (upu-V21) angular velocity of link 1
-    omega_1_t = qd_1*s_2
-    omega_1_t_2 = c_2*qd_1
-    # (upu-A8) rate of moment direction 1
-    nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
-    nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
-    # (upu-A4) angular acceleration of link 2 from the turning of axis 2
-    zeta_2_x = omega_1_t_2*qd_1_t_2
-    zeta_2_y = omega_1_t*qd_1_t_2
-    # (upu-A9) bias of the angular acceleration along moment direction 1
-    nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
-    nu_1_t_2 = (
-    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t_2)*(end_p1_r3_y*omega_1_t_2 -
-        end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
-    )
-    nu_1 = -nu_1_t - nu_1_t_2
     # (upu-V23) centripetal tensor of link 2
-    W_2_t = omega_1_t*omega_1_t
-    W_2_t_2 = omega_1_t_2*omega_1_t_2
-    W_2_t_3 = qd_1_t_2*qd_1_t_2
-    W_2_xy = omega_1_t*omega_1_t_2
+    W_2_t = qd_1_t*qd_1_t
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
-    bias_t_2 = bias_t*qd_1_t_2
-    bias_t_3 = bias_t*omega_1_t_2
-    bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
+    bias_t_2 = bias_t*qd_1_t
     # (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r1_x = g_r0_y*s_1 - c_1*g_r0_x
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
     g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
-    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
-    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
-    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
-    # (upu-V5) direction 1 of the moment that the platform joint transmits
-    n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
-    n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y
-    n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x - axis_x_upu_axes2_z*end_p1_r3_y
+    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
+    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
+    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
+    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
+    # (upu-V18) rate of joint 1
+    qd_1_t_2 = (
+    inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*omega_tip_x -
+        end_p1_r3_x*omega_tip_y))
+    )
+    # (upu-V21) angular velocity of link 1
+    omega_1_t = qd_1_t_2*s_2
+    omega_1_t_2 = c_2*qd_1_t_2
+    # (upu-A8) rate of moment direction 1
+    nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t - end_p1_r3_x*omega_tip_z
+    nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y - end_p1_r3_y*omega_tip_z
+    # (upu-A4) angular acceleration of link 2 from the turning of axis 2
+    zeta_2_x = omega_1_t_2*qd_1_t
+    zeta_2_y = omega_1_t*qd_1_t
+    # (upu-A9) bias of the angular acceleration along moment direction 1
+    nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y
+    nu_1_t_2 = (
+    nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z - qd_1_t)*(end_p1_r3_y*omega_1_t_2 -
+        end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
+    )
+    nu_1 = -nu_1_t - nu_1_t_2
+    # (upu-A10) acceleration with which the joints turn along moment direction 1
+    etad_1_t = (
+    end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y +
+        alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+        alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z)
+    )
+    etad_1 = nu_1 - etad_1_t
     # (upu-A2) acceleration of the connection point without its centripetal part
     a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y
     a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z
@@ -4167,31 +4088,33 @@ def _legs_upu(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
+    # (upu-V23) centripetal tensor of link 2
+    W_2_t_2 = omega_1_t*omega_1_t
+    W_2_t_3 = omega_1_t_2*omega_1_t_2
+    W_2_xy = omega_1_t*omega_1_t_2
+    # (upu-A5) acceleration of the connection point at zero joint accelerations
+    bias_t_3 = bias_t*omega_1_t_2
+    bias_z = bias_t_3 + 2.0*root_2*zeta_2_y
     # (upu-A6) acceleration of the connection point left to the joint accelerations
     rel_z = (
     S_ddot_x*axis_z_upu_axes2_in_base_x + S_ddot_y*axis_z_upu_axes2_in_base_y +
         S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z
     )
-    # (upu-A10) acceleration of joint 1
+    # (upu-A11) acceleration of joint 1
     qdd_1_t = (
-    o_1_x*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y + alpha_z*axis_x_upu_axes2_z) -
-        o_1_y*(alpha_x*axis_y_upu_axes2_in_base_x + alpha_y*axis_y_upu_axes2_in_base_y +
-        alpha_z*axis_y_upu_axes2_in_base_z)
-    )
-    qdd_1_t_2 = (
     S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
         S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
     )
-    qdd_1_t_3 = inv_root_2*qdd_1_t_2
-    qdd_1 = inv_w_1_t_25*rel_z + nu_1*w_1_t_4 - qdd_1_t
-    # (upu-A16) angular acceleration of link 1
-    alpha_1_t = qdd_1*s_2
-    alpha_1_t_2 = c_2*qdd_1
-    # (upu-A20) angular acceleration of link 2
+    qdd_1_t_2 = inv_root_2*qdd_1_t
+    qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z)
+    # (upu-A17) angular acceleration of link 1
+    alpha_1_t = qdd_1_t_3*s_2
+    alpha_1_t_2 = c_2*qdd_1_t_3
+    # (upu-A21) angular acceleration of link 2
     alpha_2_x = alpha_1_t - zeta_2_x
     alpha_2_y = -alpha_1_t_2 - zeta_2_y
-    # (upu-A24) acceleration tensor of link 2
-    B_2_xy = -2.0*W_2_xy - qdd_1_t_3
+    # (upu-A25) acceleration tensor of link 2
+    B_2_xy = -2.0*W_2_xy - qdd_1_t_2
     B_2_zx = zeta_2_y - alpha_2_y
     B_2_zy = alpha_2_x - zeta_2_x
     # (upu-N3) acceleration of the reference point of link 3, less gravity
@@ -4199,26 +4122,27 @@ def _legs_upu(c, k, x, s, f):
     S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y + S_ddot_z*axis_x_upu_axes2_z -
         g_r3_x
     )
-    acc_3_y = bias_t_2 + qdd_1_t_2 - g_r3_y
+    acc_3_y = bias_t_2 + qdd_1_t - g_r3_y
     acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x
     # (upu-N11) inertia force of link 3 less its weight
-    f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t_2 + W_2_t_3)
-    f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_3 + h_3_z*(W_2_t + W_2_t_3) - alpha_1_t*h_3_y
-    f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t + W_2_t_2)
+    f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y - h_3_x*(W_2_t + W_2_t_3)
+    f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) - alpha_1_t*h_3_y
+    f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 + W_2_t_3)
     # (upu-N18) inertia moment of the links that turn with link 2, about their reference points
     mu_2_x = (
-    B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_3 + J_group_2_yz*(W_2_t_2 - W_2_t_3) +
-        Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - acc_3_y*h_3_y -
+    B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t + g_r1_x*h_2_z +
+        g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) - acc_3_y*h_3_y -
         acc_3_z*h_3_z
     )
     mu_2_y = (
-    B_2_zy*J_group_2_xy + acc_3_x*h_3_y + g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx -
-        J_group_2_xz*(W_2_t - W_2_t_3) - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x - g_r3_x*h_2_y
+    B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y + g_r1_x*h_2_x -
+        B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 - acc_3_z*h_3_x -
+        g_r3_x*h_2_y
     )
     mu_2_z = (
-    J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t_3 + acc_3_x*h_3_z
-        + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z -
-        g_r3_y*h_2_x
+    J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t + Sigma_2_xx*qdd_1_t_2 +
+        acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy - J_group_2_yz*alpha_1_t_2 -
+        g_r3_x*h_2_z - g_r3_y*h_2_x
     )
     # (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point left out
     N_2_y = mu_2_y - f_3_z*root_2
@@ -4226,7 +4150,8 @@ def _legs_upu(c, k, x, s, f):
     # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_3_y + inv_root_2*mu_2_z
     G_t_2 = N_2_r0_y*inv_w_1_t_25
-    # (upu-N46) leg force on the platform without actuation and without the mass at the connection point
+    G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z
+    # (upu-N50) leg force on the platform without actuation and without the mass at the connection point
     c_in_base_x = (
     -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x
     )
@@ -4236,18 +4161,18 @@ def _legs_upu(c, k, x, s, f):
     c_in_base_z = (
     -G_t*axis_y_upu_axes2_in_base_z - G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x
     )
-    # (upu-N42) moment at the connection point that balances the leg's inertia and weight along all freedoms
-    G_m_t = N_2_r0_y*o_1_x
-    G_m_t_2 = N_2_r0_y*o_1_y
-    # (upu-N51) moment of the leg on the platform without actuation
-    c_m_in_base_x = G_m_t*axis_x_upu_axes2_x - G_m_t_2*axis_y_upu_axes2_in_base_x
-    c_m_in_base_y = G_m_t*axis_x_upu_axes2_y - G_m_t_2*axis_y_upu_axes2_in_base_y
-    c_m_in_base_z = G_m_t*axis_x_upu_axes2_z - G_m_t_2*axis_y_upu_axes2_in_base_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    # (upu-N46) moment at the connection point that balances the leg's inertia and weight along all freedoms
+    G_m_x = G_t_3*end_p1_r3_y
+    G_m_y = G_t_3*end_p1_r3_x
+    # (upu-N55) moment of the leg on the platform without actuation
+    c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x
+    c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y
+    c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (), (c_in_base_x, c_in_base_y, c_in_base_z, c_m_in_base_x, c_m_in_base_y, c_m_in_base_z,
-        axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, -n_c_t, -n_c_t_2, -n_c_t_3,
-        n_m1_in_base_x, n_m1_in_base_y, n_m1_in_base_z,),
+        axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, -n_c1_t_2, -n_c1_t_3,
+        -n_c1_t_4, n_m1_in_base_x, n_m1_in_base_y, n_m1_in_base_z,),
     )
 
 
@@ -4392,13 +4317,13 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 3)), ('Hk', (6, 3)), ('constraint_
 (),
 ('J_group_2_xx', 'J_group_2_xy', 'J_group_2_xz', 'J_group_2_yy', 'J_group_2_yz', 'J_group_2_zz',
             'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y',
-            'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3',
-            'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx',
-            'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy',
-            'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z',
-            'upu_link3_mass', 'upu_platform_joint_axis_platform_x',
+            'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size',
+            'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz',
+            'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx',
+            'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y',
+            'upu_base_point_z', 'upu_link3_mass', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -4448,13 +4373,13 @@ arrays=(('M', (6, 6)),),
             "upu",
 (),
 ('J_group_2_xx', 'J_group_2_xy', 'J_group_2_xz', 'J_group_2_yy', 'J_group_2_yz', 'J_group_2_zz',
-            'branch_1', 'branch_2', 'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3',
+            'branch_1', 'branch_2', 'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3',
             'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx',
             'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy',
             'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z',
             'upu_link3_mass', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,
@@ -4491,13 +4416,13 @@ arrays=(('Z', (6,)),),
 (),
 ('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
             'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3', 'upu_base_frame_xx',
+            'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx',
             'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy',
             'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz',
             'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z', 'upu_link3_mass',
             'upu_platform_joint_axis_platform_x', 'upu_platform_joint_axis_platform_y',
             'upu_platform_joint_axis_platform_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             6,
@@ -4561,12 +4486,12 @@ arrays=(('Hk', (6, 3)),),
             _Hk_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -4595,12 +4520,12 @@ arrays=(('constraint_bias', (3,)),),
             _constraint_bias_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -4627,13 +4552,13 @@ arrays=(('required', (6,)), ('H', (6, 3)), ('Hk', (6, 3))),
 (),
 ('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
             'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3', 'upu_base_frame_xx',
+            'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx',
             'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy',
             'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz',
             'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z', 'upu_link3_mass',
             'upu_platform_joint_axis_platform_x', 'upu_platform_joint_axis_platform_y',
             'upu_platform_joint_axis_platform_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             6,
@@ -4706,12 +4631,12 @@ arrays=(('qd', (9,)),),
             _joint_rates_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -4737,12 +4662,12 @@ arrays=(('qdd', (9,)),),
             _joint_accelerations_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -4768,8 +4693,9 @@ arrays=(('constraints', (3,)),),
             _constraints_upu,
             "upu",
 (),
-('branch_1', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_yx',
-            'upu_base_frame_yy', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_point_x',
+('branch_1', 'branch_2', 'n_c1_t', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+            'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
+            'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
             'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
@@ -4798,13 +4724,13 @@ arrays=(('leg_force', (3, 6)), ('drive', (3, 6)), ('constraint_direction', (3, 6
 (),
 ('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
             'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3', 'upu_base_frame_xx',
+            'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx',
             'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy',
             'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz',
             'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z', 'upu_link3_mass',
             'upu_platform_joint_axis_platform_x', 'upu_platform_joint_axis_platform_y',
             'upu_platform_joint_axis_platform_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z', 'volume_c_t'),
+            'upu_platform_point_z'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,

@@ -39,6 +39,7 @@ class Book:
         self.outputs: list[Output] = []
         self.leg_types: list[LegTypeInfo] = []
         self.coordinates: Coordinates | None = None
+        self._collected: dict[str, tuple[LinearForm, LinearForm] | None] = {}
         self._chapters: list[tuple[str, str, str | None, str, list[Equation]]] = []
 
     def chapter(self, id_: str, title: str, text: str, leg_type: str | None = None) -> None:
@@ -112,6 +113,38 @@ class Book:
         )
         return symbol
 
+    def collect(self, name: str, named: LinearForm, plain: LinearForm) -> None:
+        """What the rules made of a quantity: by the names of the parts, and by what they stand for.
+
+        Which of the two is shown is settled when the book is closed: parts that nobody needs
+        have no equation.
+        """
+        self._collected[name] = named, plain
+
+    def collect_no_coefficients(self, name: str) -> None:
+        """Note that of a quantity only the remainder is wanted."""
+        self._collected[name] = None
+
+    def _shown(self, left_out: set[str]) -> dict[str, LinearForm | None]:
+        """The collected forms, in names that equations define."""
+        shown: dict[str, LinearForm | None] = {}
+        for name, forms in self._collected.items():
+            if forms is None:
+                shown[name] = None
+                continue
+            named, plain = forms
+            form = LinearForm(
+                {
+                    x: plain.coefficients[x] if names_in(c) & left_out else c
+                    for x, c in named.coefficients.items()
+                },
+                plain.remainder if names_in(named.remainder) & left_out else named.remainder,
+            )
+            parts = (*form.coefficients.values(), form.remainder)
+            usable = not any(names_in(part) & left_out for part in parts)
+            shown[name] = form if usable else None
+        return shown
+
     def mark(self) -> tuple[int, int, set[str]]:
         """A point in the open chapter to return to."""
         return len(self._chapters[-1][4]), len(self.givens), set(self.notation)
@@ -160,6 +193,7 @@ class Book:
     def close(self) -> Derivation:
         """The finished derivation; equations that nothing needs are left out."""
         needed = self._needed()
+        left_out = {e.name for e in self.all_equations()} - needed
         chapters = []
         for id_, title, leg_type, text, equations in self._chapters:
             kept = [e for e in equations if e.name in needed]
@@ -176,4 +210,5 @@ class Book:
             tuple(self.outputs),
             tuple(self.leg_types),
             self.coordinates,
+            self._shown(left_out),
         )

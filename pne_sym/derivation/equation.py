@@ -17,6 +17,7 @@ import sympy as sp
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import (
     LegSum,
+    LinearForm,
     RuleApplication,
     TensorLegSum,
     TensorSymbol,
@@ -176,13 +177,15 @@ class ReciprocalBasis:
     Attributes:
         id: the equations' id.
         vectors: names of the v_k; two in the plane, three in space.
-        duals: names of the w_j.
+        duals: names of the w_j; None where nobody needs one.
         scales: sizes of the v_k, made of parameters alone, by which a singular
             basis is recognised.
         frames: names of frames in which the basis may be solved.
         rows: further rows of scalars, one entry per vector: where the leg transmits
             moments, the parts of the joints' axes along the moment directions.
         moment_duals: per vector, the scalars that multiply the moment directions.
+        length: a length of the leg, made of parameters alone, that makes moment rows
+            comparable with the others.
     """
 
     id: str
@@ -192,6 +195,7 @@ class ReciprocalBasis:
     frames: tuple[str, ...]
     rows: tuple[tuple[Any, ...], ...] = ()
     moment_duals: tuple[tuple[Any, ...], ...] = ()
+    length: Any = sp.S.One
 
 
 @dataclass(frozen=True)
@@ -342,6 +346,8 @@ class Derivation:
         outputs: what the generated code returns.
         leg_types: the leg types, in order of first appearance.
         coordinates: names and order of what goes in and comes out.
+        collected: name -> coefficients of the accelerations and remainder, by their names;
+            None where only the remainder is wanted.
     """
 
     chapters: tuple[Chapter, ...]
@@ -353,6 +359,7 @@ class Derivation:
     outputs: tuple[Output, ...] = ()
     leg_types: tuple[LegTypeInfo, ...] = ()
     coordinates: Coordinates | None = None
+    collected: dict[str, LinearForm | None] = field(default_factory=dict)
 
     def equations(self) -> Iterator[Equation]:
         """All equations in order."""

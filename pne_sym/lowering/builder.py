@@ -166,7 +166,16 @@ class Builder:
         present = [t for t in terms if t is not sp.S.Zero]
         if len(present) < 2:
             return present[0] if present else sp.S.Zero
-        return self.let(self._opened(sp.Add(*present)), hint, named=named)
+        key = ("sum", *present)
+        if key not in self._value:
+            self._remember(key, self.let(self._opened(sp.Add(*present)), hint, named=named))
+        return self._value[key]
+
+    def _remember(self, key: Any, value: Atom) -> Atom:
+        """Keep a result under the operation that asked for it, until a rollback."""
+        self._value[key] = value
+        self._made.append(key)
+        return value
 
     def _opened(self, total: Any) -> Any:
         """The sum with named sums in it opened, where terms then cancel."""
@@ -200,6 +209,12 @@ class Builder:
             return sp.S.Zero
         if a is sp.S.One or b is sp.S.One:
             return b if a is sp.S.One else a
+        key = ("product", a, b)
+        if key in self._value:
+            return self._value[key]
+        return self._remember(key, self._product(a, b, hint, named=named))
+
+    def _product(self, a: Atom, b: Atom, hint: str, *, named: bool) -> Atom:
         if a.is_Number or b.is_Number:
             return self.let(a * b, hint, named=named)
         if a == b:

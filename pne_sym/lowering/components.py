@@ -17,7 +17,7 @@ import sympy as sp
 from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, names_in
 from pne_sym.lowering.builder import Atom, Builder
 from pne_sym.lowering.frames import ConstantStep, Frames, Triple
-from pne_sym.lowering.solve import solve
+from pne_sym.lowering.solve import Screws, solve, solve_transposed
 from pne_sym.vector import nodes as n
 
 Tensor9 = tuple[Triple, Triple, Triple]
@@ -51,7 +51,16 @@ class Lowering:
         self._depth = 0
         self._in_progress: set[str] = set()
         self._dual = {
-            w.name: (basis, k) for basis in derivation.bases for k, w in enumerate(basis.duals)
+            w.name: (basis, k)
+            for basis in derivation.bases
+            for k, w in enumerate(basis.duals)
+            if w is not None
+        }
+        self._dual_amount = {
+            amount.name: (basis, k, i)
+            for basis in derivation.bases
+            for k, amounts in enumerate(basis.moment_duals)
+            for i, amount in enumerate(amounts)
         }
         self._named_parts = {
             (e.rhs.args[0].name, e.rhs.args[1]): e.name
@@ -59,6 +68,7 @@ class Lowering:
             if isinstance(e.rhs, n.Dot) and getattr(e.rhs.args[0], "name", "") in self._dual
         }
         self._basis_frame: dict[int, str] = {}
+        self._screws: dict[int, Screws] = {}
         self._axis_columns: dict[tuple[str, str, int], Triple] = {}
 
     # ---- keeping and forgetting --------------------------------------------------------
@@ -265,7 +275,8 @@ class Lowering:
             frame = basis.frames[0]
             for vector in basis.vectors:
                 self.ensure(getattr(vector, "name", ""))
-            self.b.equation = self.definition[basis.duals[0].name].id
+            names = (getattr(w, "name", "") for w in basis.duals)
+            self.b.equation = next(self.definition[w].id for w in names if w in self.definition)
             along = [k for k in range(3) if self._vector_along(frame, "base", k) is not None]
             for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:
                 self.b.keep(self.axis_column(frame, "base", k))
@@ -484,12 +495,24 @@ class Lowering:
         columns = [self.vector(v, frame) for v in basis.vectors]
         return [[column[i] for column in columns] for i in range(3)]
 
-    def _resolve(self, basis: ReciprocalBasis, x: Any) -> list[Atom]:
-        """w_j . x for all j: the solution of sum v_j y_j = x, with no moment part on the right."""
-        right = [*self.vector(x, self.basis_frame(basis)), *(sp.S.Zero for _ in basis.rows)]
-        scales = [self.scalar(s) for s in basis.scales]
-        hints = [self._named_parts.get((w.name, x), "") for w in basis.duals]
-        return solve(self.b, self._basis_matrix(basis), right, lambda _, j: scales[j], hints)
+    def _resolve(self, basis: ReciprocalBasis, x: Any, amounts: Sequence[Any] = ()) -> list[Atom]:
+        """w_j . x + sum_i m_ji amount_i for all j: sum v_j y_j = x, moment rows on the right."""
+        moments = [self.scalar(a) for a in amounts] or [sp.S.Zero] * len(basis.rows)
+        right = [*self.vector(x, self.basis_frame(basis)), *moments]
+        hints = [self._named_parts.get((getattr(w, "name", ""), x), "") for w in basis.duals]
+        return solve(self.b, self._system(basis), right, hints)
+
+    def _system(self, basis: ReciprocalBasis) -> Screws:
+        """The screws of a basis, their sizes, and the weights of their moment rows."""
+        if id(basis) not in self._screws:
+            screws = Screws(
+                self._basis_matrix(basis),
+                [self.scalar(s) for s in basis.scales],
+                [sp.S.One] * 3 + [self.scalar(basis.length)] * len(basis.rows),
+                self._store,
+            )
+            self._store(self._screws, id(basis), screws)
+        return self._screws[id(basis)]
 
     def _basis_matrix(self, basis: ReciprocalBasis) -> list[list[Atom]]:
         """Columns (v_j; moment rows) in the basis's frame."""
@@ -498,16 +521,7 @@ class Lowering:
 
     def _wrench(self, basis: ReciprocalBasis, weights: Sequence[Any]) -> list[Atom]:
         """sum g_j (w_j; m_j): the solution of v_j . F + sum_i E_ij mu_i = g_j."""
-        rows = self._basis_matrix(basis)
-        used = [i for i, row in enumerate(rows) if any(e != 0 for e in row)]
-        transposed = [[rows[i][j] for i in used] for j in range(len(basis.vectors))]
-        right = [self.scalar(g) for g in weights]
-        scales = [self.scalar(s) for s in basis.scales]
-        solution = solve(self.b, transposed, right, lambda j, _: scales[j], [""] * len(used))
-        full = [sp.S.Zero] * len(rows)
-        for i, value in zip(used, solution, strict=True):
-            full[i] = value
-        return full
+        return solve_transposed(self.b, self._system(basis), [self.scalar(g) for g in weights])
 
     def _combination(self, basis: ReciprocalBasis, weights: Sequence[Any], frame: str) -> Triple:
         """Force part of sum g_j (w_j; m_j)."""
@@ -560,11 +574,23 @@ class Lowering:
             origin = self.home[symbol.name]
             value = self._tensors[symbol.name, origin]
         before = self.b.equation
+        makers = [
+            lambda: self.rotate_tensor(value, origin, frame, symbol.is_symmetric, symbol.name)
+        ]
         if symbol.name in self.definition:
-            self.b.equation = self.definition[symbol.name].id
-        rotated = self.rotate_tensor(value, origin, frame, symbol.is_symmetric, symbol.name)
+            equation = self.definition[symbol.name]
+            self.b.equation = equation.id
+            makers += [
+                partial(self._anew, symbol, f, frame) for f in (equation.rhs, *equation.forms)
+            ]
+        found = self.cheapest(makers)
         self.b.equation = before
-        return self._store(self._tensors, key, rotated)  # type: ignore[no-any-return]
+        return self._store(self._tensors, key, found)  # type: ignore[no-any-return]
+
+    def _anew(self, symbol: Any, form: Any, frame: str) -> Tensor9:
+        """A tensor formed from its equation in another frame than its home."""
+        value = self.tensor(form, frame, symbol.name)
+        return self._symmetrised(value) if symbol.is_symmetric else value
 
     def rotate_tensor(
         self, t: Tensor9, origin: str, target: str, symmetric: bool, hint: str = ""
@@ -573,6 +599,8 @@ class Lowering:
         if origin == target:
             return t
         makers = [lambda: self._tensor_by_steps(t, origin, target, symmetric)]
+        if target == "base" and origin != "platform" and not symmetric:
+            makers.append(lambda: self._tensor_by_axes(t, origin, hint))
         if symmetric and target == "base":
             makers += [
                 partial(self._tensor_by_columns, t, origin, target, k, hint) for k in range(3)
@@ -590,6 +618,16 @@ class Lowering:
             if symmetric and isinstance(step, ConstantStep):
                 t = self._symmetrised(t)
         return self._symmetrised(t) if symmetric else t
+
+    def _tensor_by_axes(self, t: Tensor9, origin: str, hint: str) -> Tensor9:
+        """A T A^T with the axes A of the frame of origin in base axes: columns, then rows."""
+        columns = [
+            self._by_columns((t[0][j], t[1][j], t[2][j]), origin, "base", hint) for j in range(3)
+        ]
+        return tuple(
+            self._by_columns((columns[0][i], columns[1][i], columns[2][i]), origin, "base", hint)
+            for i in range(3)
+        )  # type: ignore[return-value]
 
     def _tensor_by_columns(
         self, t: Tensor9, origin: str, target: str, left: int, hint: str
@@ -686,7 +724,7 @@ class Lowering:
                 self.scalar(value), leg_type.name, f"{hint or 'total'}_{leg_type.name}"
             )
         if expr.is_Add:
-            return self.b.add([self.scalar(a) for a in expr.args], hint, named=bool(hint))
+            return self._scalar_add(expr, hint)
         if expr.is_Mul:
             return self._product(expr, hint)
         if expr.is_Pow:
@@ -698,6 +736,35 @@ class Lowering:
             self.ensure(symbol.name)
             return self._scalars[symbol.name]
         return symbol
+
+    def _scalar_add(self, expr: Any, hint: str) -> Atom:
+        """A sum; what resolves a twist or a wrench along one basis is solved for at once."""
+        plain: list[Any] = []
+        twists: dict[tuple[int, int], tuple[ReciprocalBasis, list[Any]]] = {}
+        products: list[tuple[Any, Any, tuple[ReciprocalBasis, int, int]]] = []
+        for term in expr.args:
+            dual = self._dual.get(getattr(term.args[0], "name", "")) if term.args else None
+            amount = next((f for f in sp.Mul.make_args(term) if str(f) in self._dual_amount), None)
+            if isinstance(term, n.Dot) and dual is not None and dual[0].rows:
+                basis, k = dual
+                twists[id(basis), k] = (basis, [term.args[1], *[sp.S.Zero] * len(basis.rows)])
+            elif amount is not None:
+                products.append((term, term / amount, self._dual_amount[amount.name]))
+            else:
+                plain.append(term)
+        wrenches: dict[tuple[int, int], tuple[ReciprocalBasis, list[Any]]] = {}
+        for _, factor, (basis, k, i) in products:
+            if (id(basis), k) in twists:
+                twists[id(basis), k][1][1 + i] += factor
+            else:
+                zeros = [sp.S.Zero] * len(basis.duals)
+                wrenches.setdefault((id(basis), i), (basis, zeros))[1][k] += factor
+        parts = [self.scalar(term) for term in plain]
+        for (_, k), (basis, (x, *amounts)) in twists.items():
+            parts.append(self._resolve(basis, x, amounts)[k])
+        for (_, i), (basis, weights) in wrenches.items():
+            parts.append(self._wrench(basis, weights)[3 + i])
+        return self.b.add(parts, hint, named=bool(hint))
 
     def _product(self, expr: Any, hint: str) -> Atom:
         divisor = _divisor(expr)

@@ -8,7 +8,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
-from pne_sym.mechanics.constraints import axis_across, force_vanishes
+from pne_sym.mechanics.constraints import axis_across
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import build_geometry
@@ -16,7 +16,7 @@ from pne_sym.mechanics.leg_motion import MotionWriter
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
-from pne_sym.mechanics.scope import check_scope
+from pne_sym.mechanics.scope import check_scope, screws_at_home
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
 from pne_sym.model.manipulator import JointKind, Manipulator
@@ -56,7 +56,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         for j, joint in enumerate(leg.joints)
     ]
     constraints = sorted(
-        index for leg in legs for index in leg.g.leg_type.indices for _ in leg.motion.normals
+        index for leg in legs for index in leg.g.leg_type.indices for _ in leg.motion.left_out
     )
     return Coordinates(
         space=manipulator.space.value,
@@ -86,8 +86,10 @@ def _derive_leg(
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", _GEOMETRY, prefix)
     g = build_geometry(book, leg_type, suffix, space.planar)
-    g.pure_moment = force_vanishes(manipulator, g)
+    g.screws = screws_at_home(manipulator, leg_type)
     bodies = introduce_bodies(book, g, space.planar)
+    # Links that all turn together are one body; else composite bodies cost less.
+    g.composite = len({body.group for body in bodies}) > 1
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
     S = book.define(
         g.name("S"),
@@ -128,7 +130,7 @@ def _derive_leg(
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
     kinematics = MotionWriter(book, g, platform, space, inverse)
     motion = kinematics.write(prefix)
-    text = _NEWTON_EULER + (_MOMENTS if g.pairs else "")
+    text = _NEWTON_EULER + (_COMPOSITE if g.composite else "") + (_MOMENTS if g.pairs else "")
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
     dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
     leg = Leg(g, motion, dynamics)
@@ -237,7 +239,7 @@ def _potential(
         terms: list[Any] = []
         for body in leg.dynamics.bodies:
             if body.at_tip:
-                mass = body.mass if leg.motion.normals else sp.S.Zero
+                mass = sp.S.Zero
                 place = vector_sum((platform.t, g.platform_point))
             else:
                 mass = body.mass
@@ -276,6 +278,14 @@ _ITERATED = (
     r"Not every joint of this leg has a closed form, so its displacements are found together, by "
     r"Newton's iteration on the loop closure from a first guess. All that follows is closed in "
     r"pose and displacements."
+)
+_COMPOSITE = (
+    r" The links of this leg turn differently, so their inertia is collected in the accelerations "
+    r"of the joints first: all links from k outwards, frozen together, are one composite body with "
+    r"first moment $`\mathbf h^c_k`$ and inertia tensor $`\mathbf J^c_k`$; a unit acceleration of "
+    r"joint k takes the force $`\mathbf P_k`$ and the moment $`\mathbf L_k`$, whose component "
+    r"along joint j is $`D_{jk}`$. With $`\ddot q_k`$ in closed form, $`\Gamma_j`$ then holds the "
+    r"platform's acceleration through $`\sum_k D_{jk}\,\ddot q_k`$."
 )
 _MOMENTS = (
     r" The platform joint of this leg transmits moments along $`\mathbf n_{m1}`$ and on, which do "

@@ -18,6 +18,7 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, ParameterField, Quantity
+from pne_sym.mechanics.composite import CompositeWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion, LinearWriter, MotionWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, symmetric_entries
@@ -224,7 +225,7 @@ class DynamicsWriter:
         bodies: list[LinkBody],
     ) -> None:
         self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
-        self.write = LinearWriter(book, g, motion)
+        self.write = LinearWriter(book, g, motion, collects=not g.composite)
         self.bodies = bodies
         self.zero: LinearForm = LinearForm({}, ZeroVector)
 
@@ -241,6 +242,7 @@ class DynamicsWriter:
         relative = self._relative_acceleration(body)
         turning: Any = ZeroVector
         if body.group:
+            self.write.collects = body.at_tip or not g.composite
             turning = self.write.define(
                 f"phi_{j}",
                 Cross(alpha, h) + Cross(omega, Cross(omega, h)),
@@ -254,12 +256,14 @@ class DynamicsWriter:
                 rest_forms=(tensor_rest @ h,),
                 reference="Eq. 1",
             )
+            self.write.collects = not g.composite
         return turning, relative
 
     def _relative_acceleration(self, body: LinkBody) -> Any:
         """Acceleration of the reference point minus gravity."""
         g, motion, j = self.g, self.motion, body.joint
         frame = g.frame("axes", body.group)
+        self.write.collects = body.at_tip or not g.composite
         if body.at_tip:
             rhs = motion.S_ddot - self.p.gravity
             forms: tuple[Any, ...] = ()
@@ -435,7 +439,14 @@ class DynamicsWriter:
                 phi_tip = turning
                 continue
             forces[body.joint] = self._link_force(body, turning, acceleration)
+        self.inertia = (
+            CompositeWriter(self.book, self.g, self.k, self.bodies).inertia()
+            if self.g.composite
+            else {}
+        )
+        self.tip_moment = Cross(tip.first_moment, relative[tip.joint]) if tip else ZeroVector
         gamma = self._recursion(forces, relative)
+        self.write.collects = True
         result = LegDynamics(self.bodies, tip.mass if tip else sp.S.Zero)
         self._solve(result, gamma, phi_tip, relative.get(tip.joint) if tip else None)
         for j in motion.ydd:
@@ -543,7 +554,15 @@ class DynamicsWriter:
             unit="N m" if self.g.turns(j) else "N",
             coefficient_latex=rf"\boldsymbol\gamma_{{{j}}}",
             reference="Sec. 2.2, joint table",
+            accelerated=self._accelerated(j) if self.g.composite else None,
         )
+
+    def _accelerated(self, j: int) -> Any:
+        """What of Gamma_j depends on the accelerations of the joints and of the tip."""
+        total = sp.Add(*(self.inertia.get((j, k), 0) * qdd for k, qdd in self.motion.qdd.items()))
+        if self.g.turns(j):
+            total = total + Dot(self.g.e[j], self.tip_moment)
+        return total
 
     def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:
         """The leg's force on the platform, Eq. 3 and Eq. 4."""
@@ -564,27 +583,7 @@ class DynamicsWriter:
                 reference="Sec. 2.3",
             )
         self.G = G
-        self.G_m: Any = vector_sum(gamma[j] * o for j, o in motion.o.items() if gamma[j] != 0)
-        if self.G_m != ZeroVector:
-            self.G_m = self.write.define(
-                "G_m",
-                self.G_m,
-                r"\mathbf G_m",
-                "moment at the connection point that balances "
-                "the leg's inertia and weight along all freedoms",
-                Law.RECIPROCITY,
-                unit="N m",
-                coefficient_latex=r"\mathbf C_m",
-                body=frame,
-                reference="Sec. 2.2, joint table",
-            )
-        lost: Any = ZeroVector
-        if motion.normals and a_tip is not None:
-            # The reaction along a direction left out is lambda itself, the last link's share
-            # included (contract of lambda): nothing of it may stay in Q and U, and the last
-            # link's mass cannot move to the platform.
-            phi, lost = self._without_normals(result.tip_mass * a_tip + phi)
-            result.tip_mass, a_tip = sp.S.Zero, None
+        self.G_m: Any = self._moment_balance(gamma)
         c = (
             self.write.define(
                 "c",
@@ -616,7 +615,7 @@ class DynamicsWriter:
                 symmetric=True,
                 reference="Eq. 4",
             )
-        self._moments(result, lost)
+        self._moments(result)
         result.U = (
             ZeroVector
             if form.remainder == ZeroVector
@@ -647,14 +646,48 @@ class DynamicsWriter:
             )
         )
 
-    def _moments(self, result: LegDynamics, lost: Any) -> None:
+    def _moment_balance(self, gamma: dict[int, Any]) -> Any:
+        """Moment of the leg, from its amounts along the moment directions."""
+        motion, amounts = self.motion, []
+        for k, n in enumerate(motion.n, 1):
+            amount = sp.Add(*(gamma[j] * m[k - 1] for j, m in motion.m.items()))
+            if amount != 0:
+                amounts.append(
+                    n
+                    * self.write.define(
+                        f"G_m{k}",
+                        amount,
+                        f"G_{{m{k}}}",
+                        f"moment along moment direction {k} that balances the leg's inertia "
+                        "and weight along all freedoms",
+                        Law.RECIPROCITY,
+                        unit="N m",
+                        coefficient_latex=rf"\mathbf c_{{m{k}}}",
+                        reference="Sec. 2.2, joint table",
+                    )
+                )
+        if not amounts:
+            return ZeroVector
+        return self.write.define(
+            "G_m",
+            vector_sum(amounts),
+            r"\mathbf G_m",
+            "moment at the connection point that balances the leg's inertia and weight along "
+            "all freedoms",
+            Law.RECIPROCITY,
+            unit="N m",
+            coefficient_latex=r"\mathbf C_m",
+            body=self.k.tip_frame(),
+            reference="Sec. 2.2, joint table",
+        )
+
+    def _moments(self, result: LegDynamics) -> None:
         """The moment that the leg transmits, with its linear form."""
-        total = self.G_m + lost
-        if total == ZeroVector:
+        if self.G_m == ZeroVector:
             return
         c = self.write.define(
             "c_m",
-            -total,
+            -self.G_m,
             r"\mathbf c_m",
             "moment of the leg on the platform without actuation",
             Law.REDUCTION,
@@ -664,53 +697,6 @@ class DynamicsWriter:
             reference="Eq. 3",
         )
         result.moment, result.moment_form = c, self.motion.known.get(c, LinearForm({}, c))
-
-    def _without_normals(self, force: Any) -> tuple[Any, Any]:
-        """The last link's inertia force without its part along the directions left out.
-
-        Also the moment that this part brings with it, where the leg transmits moments.
-        """
-        body = self.k.tip_frame()
-        total = self.write.define(
-            "f_tip",
-            force,
-            r"\mathbf f_u",
-            "inertia force of the last link less its weight",
-            Law.NEWTON,
-            unit="N",
-            coefficient_latex=r"\boldsymbol\Phi_u",
-            body=body,
-            reference="Eq. 1",
-        )
-        shares = []
-        for k, (n, moment) in enumerate(self.motion.normals, 1):
-            share = Dot(n, total)
-            if moment != ZeroVector:
-                share = share / (
-                    1
-                    + self.book.define(
-                        self.g.name(f"mu2_{k}"),
-                        Dot(moment, moment),
-                        rf"\mu_{{{k}}}^2",
-                        "squared moment that goes with the unit force",
-                        Law.REDUCTION,
-                    )
-                )
-            shares.append((share, n, moment))
-        along = vector_sum(share * n for share, n, _ in shares)
-        lost = vector_sum(-share * moment for share, _, moment in shares)
-        free = self.write.define(
-            "f_free",
-            total - along,
-            r"\mathbf f'_u",
-            "inertia force of the last link across the directions that the leg leaves out",
-            Law.REDUCTION,
-            unit="N",
-            coefficient_latex=r"\boldsymbol\Phi'_u",
-            body=body,
-            reference="Eq. 35",
-        )
-        return free, lost
 
     def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any], phi: Any) -> None:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""

@@ -20,6 +20,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
+from pne_sym.mechanics.scope import across
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, norm
@@ -54,7 +55,8 @@ class LegGeometry:
         zero_angle: (legs, 2) numeric (cos, sin) of zero_turn, by joint.
         bent_helices: helical joints that turn the connection point about their axes.
         unseen: revolute joints whose axes pass through the connection point.
-        pure_moment: the wrench that the leg leaves out is a pure moment at home.
+        screws: what the joints do at the platform joint at home, (legs, 3 + moments, joints).
+        composite: the leg's inertia is written in the accelerations of its joints.
         exact_frames: groups whose canonical axes are coordinate directions.
     """
 
@@ -77,7 +79,8 @@ class LegGeometry:
     zero_angle: dict[int, Array] = field(default_factory=dict)
     bent_helices: set[int] = field(default_factory=set)
     unseen: set[int] = field(default_factory=set)
-    pure_moment: bool = False
+    screws: Any = None
+    composite: bool = False
 
     @property
     def count(self) -> int:
@@ -618,8 +621,47 @@ class _Builder:
         if end.kind is PlatformJointKind.UNIVERSAL:
             self._pair(0, link, platform)
             return
-        for k, across in enumerate(_two_across(link)):
-            self._pair(k, across, platform)
+        if end.axis_link is not None and is_coordinate(end.axis_link):
+            main = int(np.argmax(np.abs(end.axis_link)))
+            for k in (0, 1):
+                across = tuple(sp.Integer(int(v)) for v in _E[(main + 1 + k) % 3])
+                self._pair(k, across, platform)
+        else:
+            self._two_across(link, platform)
+
+    def _two_across(self, axis: Any, platform: Any) -> None:
+        """Two orthogonal directions across an axis that is not along a coordinate direction."""
+        last = self.g.frame("spec", self.g.group[self.g.count])
+        a = self.give(
+            "end_axis",
+            last,
+            axis,
+            r"\mathbf a_l",
+            "axis of the platform joint in the last link",
+            "-",
+        )
+        k = across(self.type)
+        d = self.give(
+            "end_across",
+            last,
+            tuple(sp.Integer(int(v)) for v in _E[k]),
+            rf"\mathbf i_{{{'xyz'[k]}}}",
+            f"direction {'xyz'[k]} of the last link, well across that axis",
+            "-",
+        )
+        w = self._platform_direction(0, platform)
+        first = Cross(a, d)
+        for i, vector in enumerate((first / norm(first), None)):
+            direction = self.book.define(
+                self.g.name(f"end_l{i + 1}"),
+                Cross(a, self.g.pairs[0][0]) if vector is None else vector,
+                rf"\mathbf a_{{l{i + 1}}}",
+                f"direction {i + 1} across the platform joint's axis, fixed in the last link",
+                Law.LUMPING,
+                body=last,
+                parameter=True,
+            )
+            self.g.pairs.append((direction, w))
 
     def _end_axis(self, name: str, axis: Any) -> Any:
         if is_coordinate(axis):
@@ -643,18 +685,20 @@ class _Builder:
             "direction of the platform joint, fixed in the last link",
             "-",
         )
-        w = self.give(
-            f"end_p{k + 1}",
-            "platform",
-            platform,
-            rf"\mathbf a_{{p{k + 1}}}",
-            "direction of the platform joint, fixed in the platform",
-            "-",
-        )
-        self.g.pairs.append((u, w))
+        self.g.pairs.append((u, self._platform_direction(k, platform)))
         values = self.type.over_legs(lambda leg: leg.platform_joint.axis_link or _E[k])
         self.g.end_pattern = _pattern(
             np.einsum("lji,lj->li", self.c[self.g.group[self.g.count]], values)
+        )
+
+    def _platform_direction(self, k: int, components: Any) -> Any:
+        return self.give(
+            f"end_p{k + 1}",
+            "platform",
+            components,
+            rf"\mathbf a_{{p{k + 1}}}",
+            "direction of the platform joint, fixed in the platform",
+            "-",
         )
 
     def size(self) -> None:
@@ -673,16 +717,6 @@ class _Builder:
             unit="m",
             parameter=True,
         )
-
-
-def _two_across(axis: Any) -> list[Any]:
-    """Two directions across an axis given by components; unit where the axis is exact."""
-    x, y, z = axis
-    if all(c.is_Integer for c in axis):
-        main = next(k for k in range(3) if axis[k] != 0)
-        return [tuple(sp.Integer(int(v)) for v in _E[(main + k) % 3]) for k in (1, 2)]
-    # general axis: cross products with the axes; any two independent directions across it serve
-    return [(sp.S.Zero, -z, y), (z, sp.S.Zero, -x)]
 
 
 def _rodrigues(axis: Array, angle: float) -> Array:

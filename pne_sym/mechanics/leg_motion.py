@@ -9,7 +9,7 @@ acceleration a_p (and those of extra coordinates) put to zero.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -17,6 +17,7 @@ import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
 from pne_sym.mechanics.constraints import (
+    LeftOut,
     directions_left_out,
     plane_normal,
     wrenches_left_out,
@@ -58,7 +59,7 @@ class LegMotion:
         m: the same as amounts along the moment directions.
         n: moment directions.
         nu: biases of the angular acceleration along the moment directions.
-        normals: wrenches (force, moment) that do no work along the leg's freedoms.
+        left_out: wrenches that do no work along the leg's freedoms.
         qd, qdd: joint rates and accelerations.
         omega, alpha: angular velocity and acceleration, by group.
         spin: centripetal tensor omega~ omega~, by group.
@@ -70,6 +71,7 @@ class LegMotion:
         ydd: accelerations of the extra coordinates, by joint.
         gap: from the connection point as the links reach it to the platform's.
         relative: acceleration of the connection point less the bias.
+        named: expressions that have a name, for coefficients that come out as such.
     """
 
     a_p: Any = None
@@ -81,7 +83,7 @@ class LegMotion:
     m: dict[int, list[Any]] = field(default_factory=dict)
     n: list[Any] = field(default_factory=list)
     nu: list[Any] = field(default_factory=list)
-    normals: list[tuple[Vector, Vector]] = field(default_factory=list)
+    left_out: list[LeftOut] = field(default_factory=list)
     qd: dict[int, Any] = field(default_factory=dict)
     qdd: dict[int, Any] = field(default_factory=dict)
     omega: dict[int, Vector] = field(default_factory=dict)
@@ -95,6 +97,7 @@ class LegMotion:
     ydd: dict[int, Any] = field(default_factory=dict)
     gap: Any = None
     relative: Any = None
+    named: dict[Any, Any] = field(default_factory=dict)
 
 
 def _mark(unknown: Any) -> str:
@@ -106,10 +109,13 @@ def _mark(unknown: Any) -> str:
 class LinearWriter:
     """Defines quantities that depend on the acceleration, with their linear forms."""
 
-    def __init__(self, book: Book, g: LegGeometry, motion: LegMotion) -> None:
+    def __init__(
+        self, book: Book, g: LegGeometry, motion: LegMotion, *, collects: bool = True
+    ) -> None:
         self.book = book
         self.g = g
         self.motion = motion
+        self.collects = collects
 
     def define(
         self,
@@ -125,16 +131,27 @@ class LinearWriter:
         forms: Sequence[Any] = (),
         rest_forms: Sequence[Any] = (),
         reference: str = "",
+        accelerated: Any = None,
     ) -> Any:
-        """Define x = rhs, its coefficients and its remainder; returns x."""
+        """Define x = rhs, its coefficients and its remainder; returns x.
+
+        Where the writer does not collect, the coefficients are those of `accelerated`, an
+        expression that depends on the acceleration as x does (none: nobody needs them).
+        """
         book, g, motion = self.book, self.g, self.motion
         name = g.name(stem)
         form = linear_form(rhs, motion.unknowns, motion.known)
+        if accelerated is not None:
+            collected = linear_form(accelerated, motion.unknowns, motion.known)
+            form = replace(collected, remainder=form.remainder)
+        elif not self.collects:
+            form = LinearForm({}, form.remainder)
         symbol = book.define(
             name, rhs, latex, title, law, unit=unit, body=body, forms=forms, reference=reference
         )
         coefficients: dict[Any, Any] = {}
-        for k, (unknown, value) in enumerate(form.coefficients.items()):
+        for k, (unknown, found) in enumerate(form.coefficients.items()):
+            value = motion.named.get(found, found)
             if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
                 coefficients[unknown] = value
                 continue
@@ -168,6 +185,10 @@ class LinearWriter:
                 reference="Sec. 2.3, Eq. 4",
             )
         motion.known[symbol] = LinearForm(coefficients, remainder)
+        if self.collects or accelerated is not None:
+            book.collect(name, motion.known[symbol], form)
+        else:
+            book.collect_no_coefficients(name)
         return symbol
 
 
@@ -182,10 +203,20 @@ _RATES = (
 _ACCELERATIONS = (
     r"The bias $`\mathfrak b`$ is the acceleration that the connection point would have with all "
     r"joint accelerations zero; what is left, $`\ddot{\mathbf S}-\mathfrak b"
-    r"=\sum_j\mathbf v_j\,\ddot q_j`$, is resolved like the velocity. Whatever depends on the "
-    r"acceleration of the platform is then written as coefficient times $`\mathbf a_p`$ plus "
-    r"remainder, by Rules I and II; a circle marks the remainder, the same formula at "
-    r"$`\mathbf a_p=\mathbf 0`$. The acceleration tensor saves work: "
+    r"=\sum_j\mathbf v_j\,\ddot q_j`$, is resolved like the velocity. "
+)
+_COLLECTED = (
+    r"Whatever depends on the acceleration of the platform is then written as coefficient times "
+    r"$`\mathbf a_p`$ plus remainder, by Rules I and II; a circle marks the remainder, the same "
+    r"formula at $`\mathbf a_p=\mathbf 0`$. "
+)
+_REMAINDERS = (
+    r"The accelerations of the joints are written as coefficient times $`\mathbf a_p`$ plus "
+    r"remainder, by Rules I and II; what follows from them is written as it is and as remainder, "
+    r"marked by a circle: the same formula at $`\mathbf a_p=\mathbf 0`$. "
+)
+_TENSOR = (
+    r"The acceleration tensor saves work: "
     r"$`\mathbf B_j\,\mathbf r=\boldsymbol\alpha_j\times\mathbf r+\mathbf W_j\,\mathbf r`$."
 )
 
@@ -217,7 +248,7 @@ class MotionWriter:
         self.book.chapter(
             f"{prefix}-A",
             f"Accelerations of a {leg_type.architecture} leg",
-            _ACCELERATIONS,
+            _ACCELERATIONS + (_REMAINDERS if self.g.composite else _COLLECTED) + _TENSOR,
             leg_type.name,
         )
         self.acceleration()
@@ -339,14 +370,12 @@ class MotionWriter:
         self._moment_directions()
         rows = [[Dot(g.e[j], n) if g.turns(j) else sp.S.Zero for j in joints] for n in motion.n]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
-        for normal, moments in self._left_out(joints, missing):
-            motion.normals.append(
-                (normal, vector_sum(m * n for m, n in zip(moments, motion.n, strict=True)))
-            )
-            vectors.append(normal)
+        motion.left_out = self._left_out(joints, missing)
+        for wrench in motion.left_out:
+            vectors.append(wrench.force)
             scales.append(sp.S.One)
-            for row, moment in zip(rows, moments, strict=True):
-                row.append(moment)
+            for row, amount in zip(rows, wrench.amounts, strict=True):
+                row.append(amount)
         names = [*(f"w_{j}" for j in joints), *(f"wn_{k + 1}" for k in range(missing))]
         latexes = [
             *(rf"\mathbf w_{{{j}}}" for j in joints),
@@ -360,9 +389,10 @@ class MotionWriter:
         motion.w = dict(zip(joints, duals, strict=False))
         for j, amounts in zip(joints, moment_duals, strict=False):
             motion.m[j] = amounts
-            motion.o[j] = self.book.define(
+            moment = vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True))
+            motion.o[j] = motion.named[moment] = self.book.define(
                 g.name(f"o_{j}"),
-                vector_sum(m * n for m, n in zip(amounts, motion.n, strict=True)),
+                moment,
                 rf"\mathbf o_{{{j}}}",
                 f"moment part of reciprocal wrench {j}",
                 Law.RECIPROCITY,
@@ -379,6 +409,7 @@ class MotionWriter:
                 frames,
                 tuple(tuple(row) for row in rows),
                 tuple(tuple(m) for m in moment_duals),
+                g.size,
             )
         )
 
@@ -455,16 +486,15 @@ class MotionWriter:
             )
         return duals
 
-    def _left_out(self, joints: list[int], missing: int) -> list[tuple[Vector, list[Any]]]:
-        """Wrenches (force, moment amounts) that do no work along the leg's freedoms."""
+    def _left_out(self, joints: list[int], missing: int) -> list[LeftOut]:
+        """Wrenches that do no work along the leg's freedoms."""
         if missing == 0:
             return []
         if self.motion.n:
             return wrenches_left_out(self.book, self.g, self.motion, joints, missing)
-        normals = directions_left_out(
+        return directions_left_out(
             self.book, self.g, self.motion, joints, missing, self.space.planar
         )
-        return [(normal, []) for normal in normals]
 
     def _rates(self) -> None:
         g, book, motion = self.g, self.book, self.motion
@@ -494,16 +524,31 @@ class MotionWriter:
                 Law.RATE,
                 unit="m/s",
             )
+        turns = [
+            book.define(
+                g.name(f"eta_{k}"),
+                Dot(n, turning),
+                rf"\eta_{{{k}}}",
+                f"rate at which the joints turn along moment direction {k}",
+                Law.RATE,
+                unit="rad/s",
+            )
+            for k, n in enumerate(motion.n, 1)
+        ]
         for j, dual in motion.w.items():
             motion.qd[j] = book.define(
                 g.name(f"qd_{j}"),
-                Dot(dual, target) + Dot(motion.o.get(j, ZeroVector), turning),
+                Dot(dual, target) + self._resolved(j, turns),
                 rf"\dot q_{{{j}}}",
                 f"rate of joint {j}",
                 Law.RECIPROCITY,
                 unit="rad/s" if g.turns(j) else "m/s",
             )
         self._angular_velocities()
+
+    def _resolved(self, j: int, amounts: Sequence[Any]) -> Any:
+        """Part of joint j in what turns along the moment directions."""
+        return sp.Add(*(m * a for m, a in zip(self.motion.m.get(j, ()), amounts, strict=False)))
 
     def _angular_velocities(self) -> None:
         g, book, motion = self.g, self.book, self.motion
@@ -591,6 +636,7 @@ class MotionWriter:
         )
         bias = self._bias()
         self._joint_accelerations(writer, bias)
+        writer.collects = not self.g.composite
         self._angular_accelerations(writer)
         self._origin_accelerations(writer)
 
@@ -694,13 +740,22 @@ class MotionWriter:
                 body=self.tip_frame(),
             )
         motion.relative = target
-        nu = self._orientation_bias()
+        turns = [
+            writer.define(
+                f"etad_{k}",
+                Dot(n, turning) + nu,
+                rf"\dot\eta_{{{k}}}",
+                f"acceleration with which the joints turn along moment direction {k}",
+                Law.RATE,
+                unit="rad/s^2",
+                coefficient_latex=rf"\boldsymbol\eta_{{{k}}}",
+            )
+            for k, (n, nu) in enumerate(zip(motion.n, self._orientation_bias(), strict=True), 1)
+        ]
         for j, dual in motion.w.items():
             motion.qdd[j] = writer.define(
                 f"qdd_{j}",
-                Dot(dual, target)
-                + Dot(motion.o.get(j, ZeroVector), turning)
-                + sp.Add(*(m * v for m, v in zip(motion.m.get(j, ()), nu, strict=False))),
+                Dot(dual, target) + self._resolved(j, turns),
                 rf"\ddot q_{{{j}}}",
                 f"acceleration of joint {j}",
                 Law.RECIPROCITY,
@@ -763,6 +818,7 @@ class MotionWriter:
                 unit="rad/s^2",
                 coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}",
                 body=frame,
+                accelerated=self._turning(j),
             )
             tensors = []
             rest = motion.known[motion.alpha[j]].remainder
@@ -780,6 +836,13 @@ class MotionWriter:
                     )
                 )
             motion.acceleration_tensor[j] = (tensors[0], tensors[1])
+
+    def _turning(self, group: int) -> Any:
+        """What of the last link's angular acceleration the inertia at the tip needs."""
+        g = self.g
+        if not g.composite or group != g.group[g.count]:
+            return None
+        return vector_sum(self.motion.qdd[j] * g.e[j] for j in self.spans if j)
 
     def point_acceleration(self, group: int, reach: Vector, slides: Sequence[int]) -> Any:
         """Acceleration of a point of a group: (rhs, form, form of the remainder)."""

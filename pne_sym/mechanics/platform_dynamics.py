@@ -12,6 +12,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Output
+from pne_sym.mechanics.constraints import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion
@@ -502,28 +503,28 @@ class PlatformWriter:
             (index, k)
             for leg in self.legs
             for index in leg.g.leg_type.indices
-            for k in range(len(leg.motion.normals))
+            for k in range(len(leg.motion.left_out))
         )
         column = {key: c for c, key in enumerate(order)}
         for leg in self.legs:
-            for k, wrench in enumerate(leg.motion.normals):
+            for k, wrench in enumerate(leg.motion.left_out):
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
+                amounts = zip(wrench.amounts, leg.motion.n, strict=True)
+                pair = wrench.force, vector_sum(amount * n for amount, n in amounts)
                 self._force_column(
-                    "Hk", leg, wrench, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
+                    "Hk", leg, pair, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
                 )
                 self._constraint(leg, k, wrench, places)
+                self._wrench_rows("constraint_direction", leg, pair, places)
 
-    def _constraint(
-        self, leg: Leg, k: int, wrench: tuple[Any, Any], places: tuple[int, ...]
-    ) -> None:
+    def _constraint(self, leg: Leg, k: int, wrench: LeftOut, places: tuple[int, ...]) -> None:
         """The constraint, and its second derivative (Eq. 37)."""
         book, g, motion = self.book, leg.g, leg.motion
-        normal, moment = wrench
-        miss, turning = Dot(normal, motion.gap), sp.S.Zero
-        if moment != ZeroVector:  # the joints close the position; what is missed is a right angle
-            amount = sp.Symbol(g.name("mu_c"), real=True)
-            (pair,), (nu,) = g.pairs, motion.nu
-            miss, turning = -amount * Dot(*pair), amount * nu
+        miss: Any = Dot(wrench.force, motion.gap)
+        turning: Any = sp.S.Zero
+        for amount, pair, nu in zip(wrench.amounts, g.pairs, motion.nu, strict=True):
+            miss = miss - amount * Dot(*pair)
+            turning = turning + amount * nu
         gap = book.define(
             g.name(f"phi_c{k + 1}"),
             miss,
@@ -541,7 +542,7 @@ class PlatformWriter:
         )
         bias = book.define(
             g.name(f"gamma_c{k + 1}"),
-            Dot(normal, rest) + turning,
+            Dot(wrench.force, rest) + turning,
             rf"\gamma_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
             Law.LOOP_CLOSURE,
@@ -549,7 +550,6 @@ class PlatformWriter:
             reference="Eq. 37",
         )
         self._leg_scalar("constraint_bias", leg, bias, places)
-        self._wrench_rows("constraint_direction", leg, wrench, places)
 
     # ---- placing ---------------------------------------------------------------------
 

@@ -30,7 +30,7 @@ from pne_sym.derivation import Derivation, names_in
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.manipulator import Body, JointKind, Manipulator
 from pne_sym.program.ir import Program
-from pne_sym.vector import Dot, TensorSymbol, Vector, VectorSymbol
+from pne_sym.vector import Dot, DualScalar, DualVector, TensorSymbol, Vector, VectorSymbol
 from pne_sym.vector.evaluate import evaluate
 from tests import models
 
@@ -214,10 +214,14 @@ def product(coefficient: Any, unknown: Any) -> Any:
 def leg_values(
     derivation: Derivation, collected: Collected, leg_type: str, rng: np.random.Generator
 ) -> dict[str, Any]:
-    """Values of a leg's quantities: accelerations and forces follow from random other ones."""
+    """Values of a leg's quantities: rates, accelerations and forces follow from random others."""
     chapters = [c for c in derivation.chapters if c.leg_type == leg_type]
     following = [
-        e for c in chapters[3:] for e in c.equations if e.lhs not in collected.unknowns[leg_type]
+        e
+        for c in chapters[2:]
+        for e in c.equations
+        if e.lhs not in collected.unknowns[leg_type]
+        and not isinstance(e.rhs, DualVector | DualScalar)
     ]
     defined = {e.name for e in following}
     kinds = {e.name: e.lhs for e in derivation.equations()}

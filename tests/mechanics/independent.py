@@ -145,6 +145,23 @@ class Facts:
         return np.array(perpendicular_pair(axis))
 
     @cached_property
+    def amount_directions(self) -> Any:
+        """Rows: the directions of moments whose amounts the derivation names, as it states them."""
+        joint, last = self.leg.platform_joint, self.rotation(self.count)
+        if joint.kind is PlatformJointKind.RIGID:
+            return last.T[[2, 0, 1]]
+        if joint.kind is not PlatformJointKind.REVOLUTE:
+            return self.moment_directions
+        axis = np.array(joint.axis_link)
+        main = int(np.argmax(np.abs(axis)))
+        assert abs(axis[main]) == 1.0, "axes in general position have no value here"
+        return [last @ np.cross(np.eye(3)[(main + k) % 3], axis) for k in (1, 2)]
+
+    def amounts(self, vector: Array) -> Any:
+        """Components of a vector along those directions."""
+        return np.linalg.pinv(np.array(self.amount_directions).T) @ vector
+
+    @cached_property
     def duals(self) -> tuple[Any, Any]:
         """Forces w_j and moments o_j of the reciprocal wrenches: rows by joint number."""
         n = self.moment_directions
@@ -436,6 +453,12 @@ def _w_tensor(f: Facts, j: int) -> Any:
     return square(f.omega(j))
 
 
+@value_of(r"eta_(\d+)")
+def _eta(f: Facts, j: int) -> Any:
+    turning = sum((f.qd[k] * f.e(k) for k in f.free if f.turns(k)), np.zeros(3))
+    return f.amount_directions[j - 1] @ turning
+
+
 # ---- accelerations ------------------------------------------------------------------------------
 
 
@@ -478,6 +501,12 @@ def _rel(f: Facts, j: int) -> Any:
 @value_of(r"qdd_(\d+)")
 def _qdd(f: Facts, j: int) -> Any:
     return f.qdd[j]
+
+
+@value_of(r"etad_(\d+)")
+def _eta_dot(f: Facts, j: int) -> Any:
+    turning = sum((f.qdd[k] * f.e(k) for k in f.free if f.turns(k)), np.zeros(3))
+    return f.amount_directions[j - 1] @ turning
 
 
 @value_of(r"alpha_(\d+)")
@@ -535,6 +564,93 @@ def _gamma(f: Facts, j: int) -> Any:
     return f.gamma(j)
 
 
+# ---- composite bodies ---------------------------------------------------------------------------
+
+
+def _beyond(f: Facts, k: int) -> list[int]:
+    """Links from k outwards whose mass is not counted with the platform."""
+    return [i for i in range(k, f.count + 1) if f.has_mass(i) and i != f.tip_body]
+
+
+def _axis(f: Facts, j: int) -> Any:
+    return f.e(j) if f.turns(j) else np.zeros(3)
+
+
+def _start(f: Facts, group: int) -> Any:
+    return f.joint_point(group)[0] if group else np.array(f.leg.base_point)
+
+
+def _moves(f: Facts, k: int, point: Array) -> Any:
+    """Acceleration of a point beyond joint k per unit acceleration of the joint."""
+    if not f.turns(k):
+        return f.e(k)
+    pitch = f.leg.joints[k - 1].pitch
+    return np.cross(f.e(k), point - f.motion.origin[k - 1]) + pitch * f.e(k)
+
+
+def _effort(f: Facts, k: int, group: int) -> Any:
+    """Moment about a group's origin per unit acceleration of joint k."""
+    start = _start(f, group)
+    total = sum(
+        f.tensor(i) @ _axis(f, k)
+        + np.cross(f.motion.centre[i - 1] - start, f.mass(i) * _moves(f, k, f.motion.centre[i - 1]))
+        for i in _beyond(f, k)
+    )
+    return total + f.reference_tensor(f.tip_body) @ _axis(f, k) if f.tip_body else total
+
+
+@value_of(r"hc_(\d+)")
+def _composite_moment(f: Facts, j: int) -> Any:
+    start = _start(f, f.group(j))
+    return sum(f.mass(i) * (f.motion.centre[i - 1] - start) for i in _beyond(f, j))
+
+
+@value_of(r"Jc_(\d+)")
+def _composite_tensor(f: Facts, j: int) -> Any:
+    start = _start(f, j)
+    total = sum(
+        f.tensor(i) + point_inertia(f.mass(i), f.motion.centre[i - 1] - start)
+        for i in _beyond(f, j)
+    )
+    return total + f.reference_tensor(f.tip_body) if f.tip_body else total
+
+
+@value_of(r"P_c(\d+)")
+def _composite_force(f: Facts, j: int) -> Any:
+    return sum(f.mass(i) * _moves(f, j, f.motion.centre[i - 1]) for i in _beyond(f, j))
+
+
+@value_of(r"L_c(\d+)")
+def _own_effort(f: Facts, j: int) -> Any:
+    return _effort(f, j, f.group(j))
+
+
+def _joint_inertia(f: Facts, j: int, k: int) -> Any:
+    """The oracle's inertia matrix, less what the platform accounts for."""
+    full = float(f.result.joint_inertia[j - 1, k - 1])
+    if not f.tip_body:
+        return full
+    h = f.first_moment(f.tip_body)
+    return full - (
+        f.tip_mass * f.v(j) @ f.v(k)
+        + f.v(j) @ np.cross(_axis(f, k), h)
+        + f.v(k) @ np.cross(_axis(f, j), h)
+    )
+
+
+def _effort_about(group: int) -> Value:
+    return lambda f, j: _effort(f, j, group)
+
+
+def _inertia_with(k: int) -> Value:
+    return lambda f, j: _joint_inertia(f, j, k)
+
+
+for _number in range(1, 10):
+    value_of(rf"L_c(\d+)_{_number}")(_effort_about(_number))
+    value_of(rf"D_(\d+)_{_number}")(_inertia_with(_number))
+
+
 @value_of("G")
 def _g(f: Facts, j: int) -> Any:
     return f.combined(reduced=True)
@@ -543,6 +659,11 @@ def _g(f: Facts, j: int) -> Any:
 @value_of("G_m")
 def _g_m(f: Facts, j: int) -> Any:
     return f.combined(moment=True, reduced=True)
+
+
+@value_of(r"G_m(\d+)")
+def _g_amount(f: Facts, j: int) -> Any:
+    return f.amounts(_g_m(f, 0))[j - 1]
 
 
 @value_of("c")

@@ -41,6 +41,15 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = COMMON | {
         ["Px* Rz* Rz+ | R", "Px* Rz+* Py | R", "Rz Px* | R", "Rz* Rz | R"],
     ),
     "point, extra slide": ("point", ["Pt*+ Rz Px* | R", "Rz Pt* | R"]),
+    "one slide": ("spatial", ["Pt | S", *_TWO]),
+    "one helix": ("spatial", ["Ht | S", *_TWO]),
+    "one revolute": ("spatial", ["Rt | S", *_TWO]),
+    "one slide, universal at the platform": ("spatial", ["Pt | U", *_TWO, *_TWO]),
+    "two revolutes, universal at the platform": ("spatial", ["Rt Rt | U", *_TWO, *_TWO]),
+    "four joints, revolute at the platform": ("spatial", ["Rt Rt Pt Rt | R", *_TWO, *_TWO]),
+    "two joints, revolute at the platform": ("spatial", ["Rt Pt | R", *_TWO, *_TWO]),
+    "one helix, revolute at the platform": ("spatial", ["Ht | R", *_TWO, *_TWO]),
+    "four revolutes, rigid at the platform": ("spatial", ["Rt Rt Rt Rt | rigid", *_TWO]),
     "spherical, three revolutes": (
         "spherical",
         ["Rz* Ry Rx | S", "Rz Ry Px* | S", "Px Ry* Rx | S"],
@@ -52,8 +61,6 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = COMMON | {
 }
 
 REFUSED: dict[str, str] = {
-    "constrained, revolute at the platform": "leave out",
-    "constrained, rigid at the platform": "leave out",
     "planar, rigid at the platform": "platform_joint.kind: value 'rigid'; expected R or S",
     "planar, constrained": "platform_joint.kind: value 'rigid'; expected R or S",
 }

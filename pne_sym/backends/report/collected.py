@@ -46,12 +46,14 @@ def collect(derivation: Derivation) -> Collected:
             if equation.law is Law.RULES or equation.lhs in unknowns:
                 continue
             parts = _parts(equations, k)
-            form = _form(equation.rhs, unknowns, known)
-            if form is None or not (form.coefficients or parts):
-                continue
             result.origin.update({part.id: equation for part in parts})
-            named = _named(form, parts)
-            known[equation.lhs] = result.forms[equation.name] = named
+            form = (
+                derivation.collected[equation.name]
+                if equation.name in derivation.collected
+                else _form(equation.rhs, unknowns, known)
+            )
+            if form is not None and (form.coefficients or parts):
+                known[equation.lhs] = result.forms[equation.name] = form
     return result
 
 
@@ -80,14 +82,6 @@ def _form(rhs: Any, unknowns: tuple[Any, ...], known: dict[Any, LinearForm]) -> 
         return linear_form(rhs, unknowns, known)
     except NotLinearError:
         return None
-
-
-def _named(form: LinearForm, parts: list[Equation]) -> LinearForm:
-    """A form with its coefficients and remainder under the names that equations give them."""
-    names = {e.rhs: e.lhs for e in parts}
-    coefficients = {x: names.get(value, value) for x, value in form.coefficients.items()}
-    rest = [e.lhs for e in parts if e.lhs not in coefficients.values()]
-    return LinearForm(coefficients, rest[-1] if rest else form.remainder, form.steps)
 
 
 def renamed(form: LinearForm, names: Mapping[Any, Any]) -> LinearForm:

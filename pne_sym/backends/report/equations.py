@@ -98,7 +98,8 @@ class ChapterWriter:
     def _part_headline(self, equation: Equation, origin: Equation, printer: LatexPrinter) -> str:
         name = inline(printer.doprint(origin.lhs))
         where = f"{name} ([{origin.id}](#{origin.id}))"
-        for unknown, value in self.collected.forms[origin.name].coefficients.items():
+        form = self.collected.forms.get(origin.name)
+        for unknown, value in form.coefficients.items() if form else ():
             if value == equation.lhs:
                 return f"Coefficient of {inline(printer.doprint(unknown))} in {where}."
         return f"Remainder of {where}."
