@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import prod
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_parts import Parts
+from pne_sym.backends.c_parts import Parts, vector_name
 from pne_sym.backends.c_text import Routine, comment, indented, listing
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Function
@@ -74,7 +74,7 @@ class _FunctionWriter:
         parameters = [
             "const prepared *m",
             "size_t w",
-            *(f"const real *{v}" for v in self.f.inputs),
+            *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
