@@ -56,10 +56,17 @@ class Api:
 
 def api_table(bundle: Bundle, d: Described) -> tuple[Api, ...]:
     """All public functions, in the order of the header."""
-    return tuple(
-        _counted(bundle, a)
-        for a in (*_program_functions(bundle, d), *_solved(d), *_derived(d), *_helpers(d))
-    )
+    of_model = (*_program_functions(bundle, d), *_solved(d), *_derived(d))
+    if d.is_numeric:
+        of_model = tuple(_guessed(a, d) for a in of_model)
+    return tuple(_counted(bundle, a) for a in (*of_model, *_helpers(d)))
+
+
+def _guessed(api: Api, d: Described) -> Api:
+    """The function with a first guess of the displacements after the pose."""
+    after = next(k for k, i in enumerate(api.inputs, 1) if i.name in ("X", "X0"))
+    q0 = Argument("q0", d.sizes["NJ"], "NJ", optional=True)
+    return replace(api, inputs=(*api.inputs[:after], q0, *api.inputs[after:]))
 
 
 def _vectors(d: Described) -> dict[str, Argument]:

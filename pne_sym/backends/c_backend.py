@@ -21,6 +21,33 @@ from pne_sym.backends.templating import render
 
 
 @dataclass(frozen=True)
+class CClosure:
+    """Legs of a type whose displacements are found by iteration.
+
+    Attributes:
+        leg: name of the type.
+        joints: positions in q of the displacements that are looked for, per leg.
+        rows: conditions of a leg.
+        call: of the function that gives its gap and Jacobian.
+    """
+
+    leg: str
+    joints: tuple[tuple[int, ...], ...]
+    rows: int
+    call: str
+
+    @property
+    def unknowns(self) -> int:
+        """Displacements of a leg that are looked for."""
+        return len(self.joints[0])
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """The positions, leg after leg."""
+        return tuple(j for leg in self.joints for j in leg)
+
+
+@dataclass(frozen=True)
 class CView:
     """Ready strings and numbers for the templates.
 
@@ -30,7 +57,11 @@ class CView:
         prototypes, definitions: lines of every public function.
         defaults, home_x, home_q: initialisers.
         checks, prepare: statements of the preparation.
-        functions: texts of the functions of the program.
+        closures: legs whose displacements are found by iteration.
+        extra_joints, turning_joints: positions in q of the extra coordinates, and of the
+            displacements found by iteration that are angles.
+        closure_functions: texts of the functions that these need.
+        functions: texts of the other functions of the program.
         calls: calls of such functions in templates, by purpose.
         driven: number of rows on which drives act.
         free: number of equations for undriven extra coordinates.
@@ -51,6 +82,10 @@ class CView:
     home_q: str
     checks: tuple[str, ...]
     prepare: tuple[str, ...]
+    closures: tuple[CClosure, ...]
+    extra_joints: tuple[int, ...]
+    turning_joints: tuple[int, ...]
+    closure_functions: tuple[str, ...]
     functions: tuple[str, ...]
     calls: dict[str, str]
     driven: int
@@ -72,8 +107,6 @@ class CBackend:
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
         d = describe(bundle)
-        if d.is_numeric:
-            return {}
         view = self.view(bundle)
         return {
             f"{bundle.name}.h": render("c/header.h.jinja", view=view, d=d),
@@ -84,6 +117,7 @@ class CBackend:
         """What the templates print."""
         d, c, n = describe(bundle), bundle.coordinates, bundle.coordinates.sizes
         functions, runs = _functions(bundle, d)
+        closures = _closures(bundle, runs)
         api = [ApiWriter(bundle.name, a) for a in api_table(bundle, d)]
         driven = tuple(c.joints.index(a) for a in c.actuators)
         free = len(d.free_rows) + (len(d.driven_rows) if d.is_coupled else 0)
@@ -98,7 +132,11 @@ class CBackend:
             home_q=", ".join(f"R({v})" for v in c.home[1]),
             checks=tuple(parameter_checks(bundle)),
             prepare=tuple(prepare_body(bundle)),
-            functions=functions,
+            closures=closures,
+            extra_joints=tuple(c.joints.index(e) for e in c.extras),
+            turning_joints=tuple(j for x in closures for j in x.places if c.turning[j]),
+            closure_functions=tuple(t for n, t in functions.items() if _is_closure(n)),
+            functions=tuple(t for n, t in functions.items() if not _is_closure(n)),
             calls=_calls(runs),
             driven=len(d.driven_rows),
             free=free,
@@ -107,7 +145,12 @@ class CBackend:
                 "forward": _padded(n["NV"] + n["NC"]),
                 "free": _padded(free),
             },
-            big=max(n["NV"], n["NU"] + n["NC"], len(d.driven_rows)),
+            big=max(
+                n["NV"],
+                n["NU"] + n["NC"],
+                len(d.driven_rows),
+                *(max(x.rows, x.unknowns) for x in closures),
+            ),
             q0=c.pose.index("qx") if c.has_quaternion else 0,
             driven_joints=driven,
             turning_drives=tuple(k for k, j in enumerate(driven) if c.turning[j]),
@@ -130,23 +173,45 @@ def _coordinate_lines(d: Described) -> tuple[str, ...]:
     return tuple(line for name, text in named for line in wrapped(f"{name}: {text}", "    "))
 
 
-def _functions(bundle: Bundle, d: Described) -> tuple[tuple[str, ...], dict[str, Routine]]:
+def _is_closure(function: str) -> bool:
+    return function.startswith("closure_")
+
+
+def _closures(bundle: Bundle, runs: dict[str, Routine]) -> tuple[CClosure, ...]:
+    """The legs whose displacements are found by iteration."""
+    c = bundle.coordinates
+    return tuple(
+        CClosure(
+            t.name,
+            tuple(
+                tuple(c.joints.index((leg, j)) for j in range(t.joints) if t.methods[j] != "given")
+                for leg in t.indices
+            ),
+            bundle.program.shapes[f"gap_{t.name}"][1],
+            runs[f"closure_{t.name}"].call(w="1", joints="q"),
+        )
+        for t in bundle.derivation.leg_types
+        if not t.is_closed
+    )
+
+
+def _functions(bundle: Bundle, d: Described) -> tuple[dict[str, str], dict[str, Routine]]:
     """Texts of the program's functions with what evaluates them, and the routines that run them."""
-    texts, runs = [], {}
+    texts, runs = {}, {}
     public = {a.name: a for a in api_table(bundle, d) if a.arrays}
     for function in bundle.program.functions.values():
         text, runs[function.name] = function_text(bundle, function)
         if function.name in public:
             writer = ApiWriter(bundle.name, public[function.name])
             text += "\n\n" + "\n".join(writer.any(bundle, runs[function.name]))
-        texts.append(text)
-    return tuple(texts), runs
+        texts[function.name] = text
+    return texts, runs
 
 
 def _calls(runs: dict[str, Routine]) -> dict[str, str]:
     """Calls of the program's functions as the templates need them."""
     one = {"w": "1"}
-    found = {
+    return {
         "required": runs["required"].call(required="force"),
         "required_one": runs["required"].call(required="force", **one),
         "dynamics": runs["dynamics"].call(),
@@ -156,6 +221,3 @@ def _calls(runs: dict[str, Routine]) -> dict[str, str]:
         "legs_one": runs["legs"].call(**one),
         "potential_one": runs["potential"].call(potential="energies + 1", **one),
     }
-    if "constraint_bias" in runs:
-        found["constraint_bias"] = runs["constraint_bias"].call()
-    return found

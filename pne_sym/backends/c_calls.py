@@ -101,15 +101,23 @@ class ApiWriter:
         """The outputs of one state, or of several side by side, from a function of the program."""
         a, function = self.api, bundle.program.functions[self.api.name]
         sizes = {n: prod(bundle.program.shapes[n]) for n in function.arrays}
-        buffers = [f"{n}_of[{size}*LANES]" for n, size in sizes.items()]
+        taken = [i for i in a.inputs if i.name != "q0"]
+        buffers = [f"{i.name}_in[{i.size}*LANES]" for i in taken]
+        if "q" in function.inputs:
+            buffers.append(f"joints[{bundle.coordinates.sizes['NJ']}*LANES]")
+        buffers += [f"{n}_of[{size}*LANES]" for n, size in sizes.items()]
         body = [
             *listing("real ", buffers, ";"),
             "verdict values, *const t = &values;",
             "start(w, t);",
         ]
-        body += [f"check_input({i.name}, {i.size}, w, t);" for i in a.inputs]
+        body += [f"{i.name} = take({i.size}, w, {i.name}, {i.name}_in, t);" for i in taken]
+        if "q" in function.inputs:
+            body.append("close_loops(m, w, X, q0, joints, t);")
+        elif len(taken) < len(a.inputs):
+            body.append("(void)q0;")
         body.append(run.call_with({n: f"{n}_of" for n in sizes}))
-        body += [f"check_output({n}_of, {sizes[n]}, w, t);" for n in a.arrays]
+        body += [f"check({sizes[n]}, w, {n}_of, t->overflow);" for n in a.arrays]
         body.append("judge(t, w, code);")
         body += [
             f"deliver({n}_of, {o.size}, w, code, {o.name});"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import prod
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_parts import Parts
+from pne_sym.backends.c_parts import Parts, vector_name
 from pne_sym.backends.c_text import Routine, comment, indented, listing
 from pne_sym.program.count import count_function
 from pne_sym.program.ir import Block, Function
@@ -74,7 +74,7 @@ class _FunctionWriter:
         parameters = [
             "const prepared *m",
             "size_t w",
-            *(f"const real *{v}" for v in self.f.inputs),
+            *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
         ]
@@ -87,48 +87,39 @@ class _FunctionWriter:
         count = self.bundle.leg_counts[block.leg_type]
         results = {"o": f"&results_{block.leg_type}"}
         each = f"for (size_t leg = 0; leg < {count}; ++leg) {{"
-        side_by_side = {**results, "leg": "0", "legs": "1", "states": "0", "count": str(count)}
-        one_leg = {**results, "legs": "0", "states": "1", "count": "w"}
+        legs = {"leg": "0", "legs": "1", "states": "0", "count": str(count), "add": "0"}
+        states = {"legs": "0", "states": "1", "count": "w", "add": "1"}
         return [
             "if (w == 1) {  /* the legs side by side */",
-            f"    {over.call_with(side_by_side)}",
+            f"    {over.call_with(results | legs)}",
             f"    {each}",
             f"        {place.call_with({**results, 'first': 'leg'})}",
             "    }",
-            *indented(self._totals(block)),
+            *indented(self._sums(block, f"total({{}}, {count})", states="1")),
             "} else {  /* the states side by side */",
+            *indented(self._clear_sums(block)),
             f"    {each}",
-            f"        {over.call_with(one_leg)}",
+            f"        {over.call_with(results | states)}",
             f"        {place.call_with({**results, 'first': '0'})}",
-            *indented(self._accumulation(block), 2),
             "    }",
+            *indented(self._sums(block, "{}[k]", states="w")),
             "}",
         ]
 
-    def _sums(self, block: Block) -> tuple[str, str, str]:
-        """Loop over the sums of a block, where a sum stands, where its terms stand."""
+    def _clear_sums(self, block: Block) -> list[str]:
+        sums = f"results_{block.leg_type}.sum"
+        return [f"memset({sums}, 0, sizeof {sums});"] if block.sums else []
+
+    def _sums(self, block: Block, source: str, states: str) -> list[str]:
+        """Sums over the legs, put where the last part finds them."""
+        if not block.sums:
+            return []
         first = self.parts.sums.index(str(block.sums[0][0]))
-        target = f"s->sum[{first} + n]" if first else "s->sum[n]"
-        loop = f"for (size_t n = 0; n < {len(block.sums)}; ++n) {{"
-        return loop, target, f"results_{block.leg_type}.sum[n]"
-
-    def _totals(self, block: Block) -> list[str]:
-        """Sums over the legs of one state."""
-        if not block.sums:
-            return []
-        loop, target, source = self._sums(block)
-        count = self.bundle.leg_counts[block.leg_type]
-        return [loop, f"    {target}[0] = total({source}, {count});", "}"]
-
-    def _accumulation(self, block: Block) -> list[str]:
-        """One leg more in the sums of several states."""
-        if not block.sums:
-            return []
-        loop, target, source = self._sums(block)
+        target = f"s->sum[{first} + n][k]" if first else "s->sum[n][k]"
         return [
-            loop,
-            "    for (size_t k = 0; k < w; ++k) {",
-            f"        {target}[k] = leg ? {target}[k] + {source}[k] : {source}[k];",
+            f"for (size_t n = 0; n < {len(block.sums)}; ++n) {{",
+            f"    for (size_t k = 0; k < {states}; ++k) {{",
+            f"        {target} = {source.format(f'results_{block.leg_type}.sum[n]')};",
             "    }",
             "}",
         ]

@@ -28,8 +28,13 @@ from pne_sym.backends.describe import equation_titles
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput, Store
 
-_SIZES = {"X": "NQ", "V": "NV", "A": "NV"}
+_SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
 _TROUBLES = ("unreachable", "singular")
+
+
+def vector_name(vector: str) -> str:
+    """Argument of an input vector; the displacements are told from the output q by their name."""
+    return "joints" if vector == "q" else vector
 
 
 def statements(
@@ -115,7 +120,7 @@ class Parts:
         for vector in self.f.inputs:
             size = self.bundle.coordinates.sizes[_SIZES[vector]]
             lines += [
-                f"const real {vector}_{e} = {vector}[{size}*k + {e}];"
+                f"const real {vector}_{e} = {vector_name(vector)}[{e}*w + k];"
                 for e in range(size)
                 if f"{vector}_{e}" in reads
             ]
@@ -151,7 +156,7 @@ class Parts:
         parameters = [
             "const prepared *m",
             "size_t w",
-            *(f"const real *{v}" for v in self.f.inputs),
+            *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             values,
             *(f"real *{a}" for a in self.f.arrays),
             "verdict *t",
@@ -192,7 +197,8 @@ class Parts:
         ]
         lines += statements(block.assignments, self.titles, self.printer)
         for n, (target, value) in enumerate(block.sums):
-            lines.append(f"o->sum[{n}][k] = {self.printer.text(value)};  /* {target} */")
+            term, place = self.printer.text(value), f"o->sum[{n}][k]"
+            lines.append(f"{place} = add ? {place} + {term} : {term};  /* {target} */")
         lines += [
             f"o->entry[{n}][k] = {self.printer.text(store.value)};"
             for n, store in enumerate(block.stores)
@@ -209,20 +215,22 @@ class Parts:
         ] + lines
         parameters = [
             "const prepared *m",
+            "size_t w",
             "size_t leg",
             "size_t legs",
             f"const {self.name}_values *s",
             "size_t states",
             "size_t count",
-            *(f"const real *{v}" for v in self.f.inputs),
+            "int add",
+            *(f"const real *{vector_name(v)}" for v in self.f.inputs),
             f"{self.name}_results_{leg} *o",
         ]
         return Routine.of(f"{self.name}_legs_{leg}", parameters, [*tables, *_loop("count", lines)])
 
     def _leg_input(self, item: LegInput, tables: list[str]) -> str:
-        size = self.bundle.coordinates.sizes[_SIZES[item.vector]]
         place = _place_text(item.indices, "i", f"place_{item.symbol.name}", tables)
-        return f"const real {c_name(item.symbol.name)} = {item.vector}[{size}*j + {place}];"
+        value = f"{vector_name(item.vector)}[({place})*w + j]"
+        return f"const real {c_name(item.symbol.name)} = {value};"
 
     def place(self, block: Block) -> Routine:
         """Puts the entries of a leg where they belong in the output arrays."""
@@ -287,6 +295,6 @@ def _flags(checks: Iterable[Check], printer: CPrinter, target: str, operator: st
         parts.setdefault(str(check.trouble), []).append(condition)
     lines = []
     for trouble, conditions in parts.items():
-        text = " + ".join(f"unless({c})" for c in dict.fromkeys(conditions))
+        text = " + ".join(f"UNLESS({c})" for c in dict.fromkeys(conditions))
         lines += statement(f"{target}->{trouble}[k] {operator} {text}")
     return lines

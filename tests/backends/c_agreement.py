@@ -1,0 +1,101 @@
+"""Generated C against generated NumPy: every public function, single states and batches."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from tests.backends.c_library import Array, CLibrary
+
+TOLERANCE = 1e-11
+FOUND_BY_ITERATION = {"forward_kinematics": 1e-9, "project": 1e-9}
+"""Iterations stop at residuals, not at the last digit."""
+
+
+def vectors(module: Any, states: list[Any], rng: np.random.Generator) -> dict[str, Array]:
+    """An array for every input of every function, states first."""
+    X, V, A, wrench, q = (
+        np.array([getattr(s, name) for s in states]) for name in ("X", "V", "A", "wrench", "q")
+    )
+    n = len(states)
+    guess = q + rng.uniform(-0.02, 0.02, q.shape)
+    return {
+        "X": X,
+        "V": V,
+        "A": A,
+        "wrench": wrench,
+        "q0": guess,
+        "tau": rng.uniform(-50.0, 50.0, (n, module.NU)),
+        "weights": np.tile(rng.uniform(0.5, 2.0, module.NU), (n, 1)),
+        "q_actuated": q[:, list(module._DRIVEN_JOINTS)],
+        "X0": X + rng.uniform(-0.01, 0.01, X.shape),
+        "rpy": rng.uniform(-3.0, 3.0, (n, 3)),
+        **_pose(module, X),
+    }
+
+
+def _pose(module: Any, X: Array) -> dict[str, Array]:
+    """Position and rotation matrix, where the space has rotation."""
+    if not hasattr(module, "rotation"):
+        return {}
+    R = module.rotation(X)
+    return {"R": R, "t": X[:, : getattr(module, "_Q", 2)]}
+
+
+def from_numpy(module: Any, name: str, given: Mapping[str, Array], p: Any) -> list[Array]:
+    """What the function of the NumPy module makes of these inputs, (states, flat) each."""
+    given = dict(given)
+    options = {} if name in ("rotation", "pose", "pose_from_rpy", "X_dot") else {"p": p}
+    if name == "inverse_dynamics_weighted":
+        name = "inverse_dynamics"
+        given["weights"] = given["weights"][0]
+    made = getattr(module, name)(**given, **options)
+    made = made if isinstance(made, tuple) else (made,)
+    n = len(next(iter(given.values())))
+    return [np.reshape(array, (n, -1)) for array in made]
+
+
+def compared(name: str, array: Array, module: Any) -> Array:
+    """What of an output is determined: of a basis, the projector on the space it spans."""
+    if name != "null_space":
+        return array
+    basis = array.reshape(len(array), module.NU, -1)
+    return np.asarray(basis @ np.swapaxes(basis, 1, 2)).reshape(len(array), -1)
+
+
+def error(got: Array, want: Array) -> float:
+    """Largest difference, relative to the largest entry; NaN only where both are."""
+    np.testing.assert_array_equal(np.isnan(got), np.isnan(want))
+    size = float(np.nanmax(np.abs(want), initial=0.0))
+    return float(np.nanmax(np.abs(got - want), initial=0.0)) / (size or 1.0)
+
+
+def assert_agree(
+    library: CLibrary,
+    module: Any,
+    given: Mapping[str, Array],
+    p: Any = None,
+    tolerance: float | None = None,
+) -> int:
+    """Every function of both; returns how many were compared."""
+    for name, api in library.api.items():
+        inputs = {i.name: given[i.name] for i in api.inputs}
+        want = from_numpy(module, name, inputs, p)
+        batch, status = library.batch(name, *inputs.values())
+        limit = tolerance or FOUND_BY_ITERATION.get(name, TOLERANCE)
+        assert len(want) == len(batch), name
+        failed = np.any([np.isnan(w).any(axis=1) for w in want], axis=0)
+        np.testing.assert_array_equal(status != 0, failed, err_msg=name)
+        assert not failed.all(), name
+        for one, (got, wanted) in enumerate(zip(batch, want, strict=True)):
+            got, wanted = compared(name, got, module), compared(name, wanted, module)
+            assert error(got, wanted) < limit, (name, one, error(got, wanted))
+        for k in range(len(status)):
+            found, code = library.single(name, *(v[k] for v in inputs.values()))
+            assert code == status[k], name
+            for got, wanted in zip(found, batch, strict=True):
+                assert error(compared(name, got[None], module),
+                             compared(name, wanted[None, k], module)) < limit, name  # fmt: skip
+    return len(library.api)

@@ -1,0 +1,29 @@
+"""The generated C computes what the generated NumPy computes, for the whole catalogue."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pne_sym import manipulators
+from tests import models
+from tests.backends.c_agreement import assert_agree, vectors
+from tests.backends.c_library import FAST, OK, CLibrary
+
+STATES = 19  # two lanes of 8 states, and a remainder
+
+
+@pytest.mark.parametrize("name", manipulators.names())
+def test_catalogue(name: str, tmp_path: Path) -> None:
+    nominal, other = models.catalogue(name), models.random_spec(name, 1)
+    module, p = models.module(nominal), models.live_parameters(nominal, other)
+    library = CLibrary(
+        models.bundle(nominal), tmp_path, flags=FAST if name == "delta" else ("-O0",)
+    )
+    assert library.status == OK
+    assert library.prepare(library.parameters(p)) == OK
+    states = [models.state_at(other, seed) for seed in range(STATES)]
+    given = vectors(module, states, np.random.default_rng(0))
+    assert assert_agree(library, module, given, p) >= 12
