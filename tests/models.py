@@ -1,10 +1,20 @@
-"""Models compiled in memory, once per test run, and the live parameters of other specifications."""
+"""Models compiled in memory, once per test run, and the live parameters of other specifications.
+
+Texts of generated modules are kept between runs, and shared by the workers of one, under all that
+they depend on: the engine's sources and templates, versions of libraries, the specification.
+"""
 
 from __future__ import annotations
 
+import hashlib
 import json
+import os
 import re
+import shutil
 from functools import cache
+from importlib.metadata import version
+from itertools import count
+from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -14,11 +24,27 @@ from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.manifest import ManifestBackend
 from pne_sym.backends.numpy_backend import NumpyBackend
+from pne_sym.mechanics.derive import derive
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.pipeline import compile_bundle
 from tests.oracle.specs import State, random_state, randomise
 
+_ROOT = Path(__file__).resolve().parents[1]
+_LIBRARIES = ("jinja2", "numpy", "pne-sym", "sympy")
+
+
+def _engine() -> str:
+    """Digest of everything but the specification that generated texts depend on."""
+    found = hashlib.sha256("".join(version(name) for name in _LIBRARIES).encode())
+    for folder, pattern in (("pne_sym", "*.py"), ("templates", "*.jinja")):
+        for path in sorted((_ROOT / folder).rglob(pattern)):
+            found.update(f"{path.relative_to(_ROOT)}\0".encode() + path.read_bytes())
+    return found.hexdigest()[:32]
+
+
+# At import, when the engine has been: what is edited during a run is not taken for what ran.
+_KEPT = _ROOT / ".pytest_cache" / "models" / _engine()
 _STEP = re.compile(r"\.?([a-z_]+)|\[(\d+)\]")
 
 
@@ -35,10 +61,34 @@ def bundle(manipulator: Manipulator) -> Bundle:
 
 
 @cache
+def texts(manipulator: Manipulator) -> tuple[str, str]:
+    """The NumPy module and the manifest."""
+    kept = _KEPT / f"{hashlib.sha256(repr(manipulator).encode()).hexdigest()[:32]}.json"
+    if not kept.exists():
+        _keep(kept, manipulator)
+    module_text, manifest_text = json.loads(kept.read_text(encoding="utf-8"))
+    return module_text, manifest_text
+
+
+def _keep(kept: Path, manipulator: Manipulator) -> None:
+    """Generate and store, complete at every moment for other workers to read."""
+    compiled = bundle(manipulator)
+    made = (
+        NumpyBackend().emit(compiled)[f"{compiled.name}.py"],
+        ManifestBackend().emit(compiled)[f"{compiled.name}.json"],
+    )
+    _KEPT.mkdir(parents=True, exist_ok=True)
+    for other in _KEPT.parent.iterdir():
+        if other != _KEPT:  # of an engine that is no more
+            shutil.rmtree(other, ignore_errors=True)
+    draft = kept.with_suffix(f".{os.getpid()}")
+    draft.write_text(json.dumps(made), encoding="utf-8")
+    draft.replace(kept)
+
+
 def source(manipulator: Manipulator) -> str:
     """Text of the NumPy module."""
-    compiled = bundle(manipulator)
-    return NumpyBackend().emit(compiled)[f"{compiled.name}.py"]
+    return texts(manipulator)[0]
 
 
 @cache
@@ -52,8 +102,7 @@ def module(manipulator: Manipulator) -> Any:
 @cache
 def manifest(manipulator: Manipulator) -> dict[str, Any]:
     """The manifest, as a program would read it."""
-    compiled = bundle(manipulator)
-    data: dict[str, Any] = json.loads(ManifestBackend().emit(compiled)[f"{compiled.name}.json"])
+    data: dict[str, Any] = json.loads(texts(manipulator)[1])
     return data
 
 
@@ -61,6 +110,20 @@ def manifest(manipulator: Manipulator) -> dict[str, Any]:
 def random_spec(name: str, seed: int) -> Manipulator:
     """Random geometry, inertia, tilted frames and gravity of a catalogue entry's structure."""
     return randomise(catalogue(name), np.random.default_rng(seed))
+
+
+@cache
+def same_branch_spec(name: str, seed: int) -> Manipulator:
+    """A random specification whose home is on the catalogue entry's branches.
+
+    Branches are fixed at generation: only such a one is a matter of parameters.
+    """
+    wanted = derive(catalogue(name)).parameters.branches
+    for attempt in count():
+        found = random_spec(name, 1000 * attempt + seed)
+        if derive(found).parameters.branches == wanted:
+            return found
+    raise AssertionError
 
 
 @cache

@@ -275,7 +275,7 @@ class Coordinates:
         actuators: (leg, joint) of every entry of tau, counted from 0.
         extras: (leg, joint) of the extra coordinates, counted from 0.
         constraints: leg of every entry of lambda.
-        turning: for every entry of q whether it is an angle.
+        turning: for every entry of q whether whole turns change nothing (not so for a screw).
         home: X and q at home.
         transmits_moments: some leg transmits a moment: leg reactions have six entries.
     """

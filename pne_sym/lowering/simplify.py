@@ -108,7 +108,7 @@ def _occurrences(expr: Any, symbol: Any) -> int:
 def _fits(user: Any, target: Any, expr: Any) -> bool:
     """Whether SymPy keeps the operation count when the value is put in place."""
     combined = user.xreplace({target: expr})
-    if combined.has(sp.Abs):  # the root of a square
+    if combined.has(sp.Abs):  # what SymPy makes of the root of a square; programs have no such node
         return False
     if any(abs(p.exp) != sp.Rational(1, 2) for p in combined.atoms(sp.Pow) if not p.exp.is_Integer):
         return False

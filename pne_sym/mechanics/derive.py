@@ -69,7 +69,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         actuators=tuple((i, j) for i, j, joint in joints if joint.actuated),
         extras=tuple((i, j) for i, j, joint in joints if joint.extra),
         constraints=tuple(constraints),
-        turning=tuple(joint.kind is not JointKind.PRISMATIC for *_, joint in joints),
+        turning=tuple(joint.kind is JointKind.REVOLUTE for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
         transmits_moments=any(leg.motion.n for leg in legs),
     )

@@ -1,13 +1,10 @@
-"""Which entries of the catalogue the engine handles, and why not the others: the one list."""
+"""Entries of the catalogue: all, and one of each kind."""
 
 from __future__ import annotations
 
 from pne_sym import manipulators
 
-UNSUPPORTED: dict[str, str] = {}
-"""Name -> part of the message with which it is refused."""
-
-SUPPORTED = tuple(name for name in manipulators.names() if name not in UNSUPPORTED)
+SUPPORTED = manipulators.names()
 
 SAMPLE = (
     "fivebar_offset",
