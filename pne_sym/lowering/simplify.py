@@ -108,6 +108,8 @@ def _occurrences(expr: Any, symbol: Any) -> int:
 def _fits(user: Any, target: Any, expr: Any) -> bool:
     """Whether SymPy keeps the operation count when the value is put in place."""
     combined = user.xreplace({target: expr})
+    if combined.has(sp.Abs):  # the root of a square, which is no operation of a program
+        return False
     if any(abs(p.exp) != sp.Rational(1, 2) for p in combined.atoms(sp.Pow) if not p.exp.is_Integer):
         return False
     return operations(combined) <= operations(user) + operations(expr) <= 2 * _LONGEST
