@@ -11,10 +11,10 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
+from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches, direction
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import axes_at
 from pne_sym.model.closure import pose_at
-from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
@@ -35,9 +35,11 @@ def directions_left_out(
             return [axis]
         first, second = (motion.v[j] for j in joints)
         return [_unit(book, g, "n_c", Cross(first, second))]
+    (only,) = (motion.v[j] for j in joints)
     if axis is None:
-        raise ValueError("a leg with a single freedom along its slide leaves out a plane")
-    return [axis, _unit(book, g, "n_c", Cross(axis, motion.v[joints[0]]))]
+        auxiliary = direction(book, g, g.completion.forces[0], g.frame("axes", g.group[g.count]))
+        axis = _unit(book, g, "n_c1", Cross(auxiliary, only))
+    return [axis, _unit(book, g, "n_c", Cross(axis, only))]
 
 
 def plane_normal(book: Book, g: LegGeometry) -> Vector:
@@ -55,28 +57,21 @@ def plane_normal(book: Book, g: LegGeometry) -> Vector:
 
 
 def wrenches_left_out(
-    book: Book, g: LegGeometry, motion: Any, joints: list[int], missing: int
-) -> list[tuple[Vector, list[Any]]]:
-    """Wrenches (unit force, moment amount) that do no work along a leg that transmits moments.
+    book: Book, g: LegGeometry, motion: Any, joints: list[int], freedoms: Freedoms
+) -> list[LeftOut]:
+    """Wrenches that do no work along a leg that transmits moments.
 
-    Raises:
-        SpecError: other than three joints and one moment direction.
+    Three joints and one moment have a formula of their own, without auxiliary directions.
     """
-    if missing != 1 or len(joints) != 3:
-        raise SpecError(
-            g.leg_type.name,
-            "platform_joint",
-            f"{len(joints)} freedoms and {len(motion.n)} transmitted moments leave out "
-            f"{missing} directions",
-            "legs that leave out one direction, with three joints",
-        )
+    if len(motion.n) != 1 or len(joints) != 3:
+        return completed_wrenches(book, g, g.completion, freedoms)
     (n,) = motion.n
     across = [Cross(motion.v[joints[(k + 1) % 3]], motion.v[joints[(k + 2) % 3]]) for k in range(3)]
     parts = [-Dot(g.e[j], n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
     volume = Dot(motion.v[joints[0]], across[0])
     if g.pure_moment:
-        return [_per_unit_moment(book, g, vector_sum(parts), volume, frame)]
+        return [_per_unit_moment(book, g, vector_sum(parts), volume, frame, n)]
     direction = book.define(
         g.name("f_c_part"),
         vector_sum(parts),
@@ -113,12 +108,12 @@ def wrenches_left_out(
         unit="m",
         reference="Eq. 35",
     )
-    return [(force, [amount])]
+    return [LeftOut(force, (amount,), amount * n)]
 
 
 def _per_unit_moment(
-    book: Book, g: LegGeometry, force: Vector, volume: Any, frame: str
-) -> tuple[Vector, list[Any]]:
+    book: Book, g: LegGeometry, force: Vector, volume: Any, frame: str, n: Vector
+) -> LeftOut:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
     condition = Condition(Trouble.SINGULAR, volume, g.size**3)
     scale = book.define(
@@ -148,7 +143,7 @@ def _per_unit_moment(
         Law.GEOMETRY,
         reference="Eq. 35",
     )
-    return direction, [amount]
+    return LeftOut(direction, (amount,), amount * n)
 
 
 def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
@@ -169,17 +164,21 @@ def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
             for joint, e in zip(leg.joints, axes, strict=True)
             if joint.kind is not JointKind.PRISMATIC
         ]
-        if max(along) > 1e-6:
+        if max(along, default=0.0) > 1e-6:
             return False
     return True
 
 
 def axis_across(g: LegGeometry, joints: list[int]) -> Vector | None:
     """A joint axis perpendicular to every velocity vector: e x r is across e itself."""
+
+    def is_across(k: int, j: int) -> bool:
+        if g.acts_as_slide(j):
+            return g.perpendicular(k, j)
+        return j not in g.pitch and g.parallel(k, j) != 0
+
     for k in range(1, g.count + 1):
-        if not g.turns(k):
-            continue
-        if all(g.parallel(k, j) if g.turns(j) else g.perpendicular(k, j) for j in joints):
+        if g.turns(k) and all(is_across(k, j) for j in joints):
             return g.e[k]
     return None
 

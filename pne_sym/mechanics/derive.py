@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-import sympy as sp
-
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
+from pne_sym.mechanics.completion import completion_at_home
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
@@ -111,7 +110,10 @@ def _derive_leg(
             body=g.frame("axes", 0),
         )
     freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-    constrained = len(freedoms) < (2 if space.planar else 3) + len(g.pairs)
+    missing = (2 if space.planar else 3) + len(g.pairs) - len(freedoms)
+    constrained = missing > 0
+    if constrained and not space.planar:
+        g.completion = completion_at_home(manipulator, g, missing)
     flat = constrained and not space.planar and not g.pairs
     normal = axis_across(g, freedoms) if flat else None
     before = book.mark()
@@ -236,13 +238,9 @@ def _potential(
         g = leg.g
         terms: list[Any] = []
         for body in leg.dynamics.bodies:
-            if body.at_tip:
-                mass = body.mass if leg.motion.normals else sp.S.Zero
-                place = vector_sum((platform.t, g.platform_point))
-            else:
-                mass = body.mass
-                place = vector_sum((g.base_point, *_path(motion, g, body.joint)))
-            terms.append(mass * place + body.first_moment)
+            if not body.at_tip:  # its mass is counted with the platform
+                terms.append(body.mass * vector_sum((g.base_point, *_path(motion, g, body.joint))))
+            terms.append(body.first_moment)
         moment = vector_sum(terms)
         if moment != ZeroVector:
             total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)

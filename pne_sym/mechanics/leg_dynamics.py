@@ -578,13 +578,6 @@ class DynamicsWriter:
                 body=frame,
                 reference="Sec. 2.2, joint table",
             )
-        lost: Any = ZeroVector
-        if motion.normals and a_tip is not None:
-            # The reaction along a direction left out is lambda itself, the last link's share
-            # included (contract of lambda): nothing of it may stay in Q and U, and the last
-            # link's mass cannot move to the platform.
-            phi, lost = self._without_normals(result.tip_mass * a_tip + phi)
-            result.tip_mass, a_tip = sp.S.Zero, None
         c = (
             self.write.define(
                 "c",
@@ -616,7 +609,7 @@ class DynamicsWriter:
                 symmetric=True,
                 reference="Eq. 4",
             )
-        self._moments(result, lost)
+        self._moments(result)
         result.U = (
             ZeroVector
             if form.remainder == ZeroVector
@@ -647,14 +640,13 @@ class DynamicsWriter:
             )
         )
 
-    def _moments(self, result: LegDynamics, lost: Any) -> None:
+    def _moments(self, result: LegDynamics) -> None:
         """The moment that the leg transmits, with its linear form."""
-        total = self.G_m + lost
-        if total == ZeroVector:
+        if self.G_m == ZeroVector:
             return
         c = self.write.define(
             "c_m",
-            -total,
+            -self.G_m,
             r"\mathbf c_m",
             "moment of the leg on the platform without actuation",
             Law.REDUCTION,
@@ -664,53 +656,6 @@ class DynamicsWriter:
             reference="Eq. 3",
         )
         result.moment, result.moment_form = c, self.motion.known.get(c, LinearForm({}, c))
-
-    def _without_normals(self, force: Any) -> tuple[Any, Any]:
-        """The last link's inertia force without its part along the directions left out.
-
-        Also the moment that this part brings with it, where the leg transmits moments.
-        """
-        body = self.k.tip_frame()
-        total = self.write.define(
-            "f_tip",
-            force,
-            r"\mathbf f_u",
-            "inertia force of the last link less its weight",
-            Law.NEWTON,
-            unit="N",
-            coefficient_latex=r"\boldsymbol\Phi_u",
-            body=body,
-            reference="Eq. 1",
-        )
-        shares = []
-        for k, (n, moment) in enumerate(self.motion.normals, 1):
-            share = Dot(n, total)
-            if moment != ZeroVector:
-                share = share / (
-                    1
-                    + self.book.define(
-                        self.g.name(f"mu2_{k}"),
-                        Dot(moment, moment),
-                        rf"\mu_{{{k}}}^2",
-                        "squared moment that goes with the unit force",
-                        Law.REDUCTION,
-                    )
-                )
-            shares.append((share, n, moment))
-        along = vector_sum(share * n for share, n, _ in shares)
-        lost = vector_sum(-share * moment for share, _, moment in shares)
-        free = self.write.define(
-            "f_free",
-            total - along,
-            r"\mathbf f'_u",
-            "inertia force of the last link across the directions that the leg leaves out",
-            Law.REDUCTION,
-            unit="N",
-            coefficient_latex=r"\boldsymbol\Phi'_u",
-            body=body,
-            reference="Eq. 35",
-        )
-        return free, lost
 
     def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any], phi: Any) -> None:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""

@@ -55,6 +55,7 @@ class LegGeometry:
         bent_helices: helical joints that turn the connection point about their axes.
         unseen: revolute joints whose axes pass through the connection point.
         pure_moment: the wrench that the leg leaves out is a pure moment at home.
+        completion: directions that complete the freedoms of a leg that lacks some, in space.
         exact_frames: groups whose canonical axes are coordinate directions.
     """
 
@@ -78,6 +79,7 @@ class LegGeometry:
     bent_helices: set[int] = field(default_factory=set)
     unseen: set[int] = field(default_factory=set)
     pure_moment: bool = False
+    completion: Any = None
 
     @property
     def count(self) -> int:
@@ -618,7 +620,7 @@ class _Builder:
         if end.kind is PlatformJointKind.UNIVERSAL:
             self._pair(0, link, platform)
             return
-        for k, across in enumerate(_two_across(link)):
+        for k, across in enumerate(two_across(link)):
             self._pair(k, across, platform)
 
     def _end_axis(self, name: str, axis: Any) -> Any:
@@ -675,7 +677,7 @@ class _Builder:
         )
 
 
-def _two_across(axis: Any) -> list[Any]:
+def two_across(axis: Any) -> list[Any]:
     """Two directions across an axis given by components; unit where the axis is exact."""
     x, y, z = axis
     if all(c.is_Integer for c in axis):

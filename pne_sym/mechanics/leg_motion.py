@@ -16,6 +16,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.mechanics.completion import Freedoms, LeftOut
 from pne_sym.mechanics.constraints import (
     directions_left_out,
     plane_normal,
@@ -81,7 +82,7 @@ class LegMotion:
     m: dict[int, list[Any]] = field(default_factory=dict)
     n: list[Any] = field(default_factory=list)
     nu: list[Any] = field(default_factory=list)
-    normals: list[tuple[Vector, Vector]] = field(default_factory=list)
+    normals: list[LeftOut] = field(default_factory=list)
     qd: dict[int, Any] = field(default_factory=dict)
     qdd: dict[int, Any] = field(default_factory=dict)
     omega: dict[int, Vector] = field(default_factory=dict)
@@ -205,6 +206,7 @@ class MotionWriter:
         self.q = inverse.q
         self.x = inverse.x
         self.S = inverse.S
+        self.is_closed = inverse.is_closed
         self.motion = LegMotion()
 
     def write(self, prefix: str) -> LegMotion:
@@ -303,7 +305,9 @@ class MotionWriter:
             self.motion.v[j] = self._velocity_vector(j, rods)
         first = turning[0] if turning else None
         reached = vector_sum((self.spans[0], rods[first] if first else ZeroVector))
-        self.motion.gap = self.S - reached
+        # Three joints with a closed form leave no gap, they miss right angles alone.
+        closes = self.is_closed and g.pairs and sum(not g.is_extra(j) for j in self.motion.v) == 3
+        self.motion.gap = ZeroVector if closes else self.S - reached
         self._basis()
         self._rates()
 
@@ -339,14 +343,14 @@ class MotionWriter:
         self._moment_directions()
         rows = [[Dot(g.e[j], n) if g.turns(j) else sp.S.Zero for j in joints] for n in motion.n]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
-        for normal, moments in self._left_out(joints, missing):
-            motion.normals.append(
-                (normal, vector_sum(m * n for m, n in zip(moments, motion.n, strict=True)))
-            )
-            vectors.append(normal)
+        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), motion.n,
+                            self.tip_frame())  # fmt: skip
+        motion.normals = self._left_out(joints, missing, freedoms)
+        for left_out in motion.normals:
+            vectors.append(left_out.force)
             scales.append(sp.S.One)
-            for row, moment in zip(rows, moments, strict=True):
-                row.append(moment)
+            for row, n in zip(rows, motion.n, strict=True):
+                row.append(Dot(n, left_out.moment))
         names = [*(f"w_{j}" for j in joints), *(f"wn_{k + 1}" for k in range(missing))]
         latexes = [
             *(rf"\mathbf w_{{{j}}}" for j in joints),
@@ -455,16 +459,16 @@ class MotionWriter:
             )
         return duals
 
-    def _left_out(self, joints: list[int], missing: int) -> list[tuple[Vector, list[Any]]]:
-        """Wrenches (force, moment amounts) that do no work along the leg's freedoms."""
+    def _left_out(self, joints: list[int], missing: int, freedoms: Freedoms) -> list[LeftOut]:
+        """Wrenches that do no work along the leg's freedoms."""
         if missing == 0:
             return []
         if self.motion.n:
-            return wrenches_left_out(self.book, self.g, self.motion, joints, missing)
+            return wrenches_left_out(self.book, self.g, self.motion, joints, freedoms)
         normals = directions_left_out(
             self.book, self.g, self.motion, joints, missing, self.space.planar
         )
-        return [(normal, []) for normal in normals]
+        return [LeftOut(normal) for normal in normals]
 
     def _rates(self) -> None:
         g, book, motion = self.g, self.book, self.motion

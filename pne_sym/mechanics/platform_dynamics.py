@@ -12,6 +12,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Output
+from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion
@@ -506,24 +507,37 @@ class PlatformWriter:
         )
         column = {key: c for c, key in enumerate(order)}
         for leg in self.legs:
-            for k, wrench in enumerate(leg.motion.normals):
+            for k, left_out in enumerate(leg.motion.normals):
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
+                wrench = left_out.force, left_out.moment
                 self._force_column(
                     "Hk", leg, wrench, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
                 )
-                self._constraint(leg, k, wrench, places)
+                self._constrained_extras(leg, left_out, places)
+                self._constraint(leg, k, left_out, places)
 
-    def _constraint(
-        self, leg: Leg, k: int, wrench: tuple[Any, Any], places: tuple[int, ...]
-    ) -> None:
+    def _constrained_extras(self, leg: Leg, left_out: LeftOut, places: tuple[int, ...]) -> None:
+        """What the constraint does along the extra freedoms of its leg."""
+        for other, j, rows in self._extras():
+            if other is not leg:
+                continue
+            work = Dot(left_out.force, leg.motion.v[j])
+            if leg.g.turns(j):
+                work = work + Dot(left_out.moment, leg.g.e[j])
+            if work != 0:
+                self.book.outputs.append(
+                    Output("Hk", -work, ((0, 0),), ((0, 0),), leg.name, rows, places)
+                )
+
+    def _constraint(self, leg: Leg, k: int, left_out: LeftOut, places: tuple[int, ...]) -> None:
         """The constraint, and its second derivative (Eq. 37)."""
         book, g, motion = self.book, leg.g, leg.motion
-        normal, moment = wrench
-        miss, turning = Dot(normal, motion.gap), sp.S.Zero
-        if moment != ZeroVector:  # the joints close the position; what is missed is a right angle
-            amount = sp.Symbol(g.name("mu_c"), real=True)
-            (pair,), (nu,) = g.pairs, motion.nu
-            miss, turning = -amount * Dot(*pair), amount * nu
+        normal = left_out.force
+        # By how much the position is missed, and the right angles of the platform joint.
+        amounts = left_out.amounts
+        angles = [a * Dot(*pair) for a, pair in zip(amounts, g.pairs, strict=True)]
+        miss = Dot(normal, motion.gap) - sp.Add(*angles)
+        turning = sp.Add(*(a * nu for a, nu in zip(amounts, motion.nu, strict=True)))
         gap = book.define(
             g.name(f"phi_c{k + 1}"),
             miss,
@@ -549,7 +563,7 @@ class PlatformWriter:
             reference="Eq. 37",
         )
         self._leg_scalar("constraint_bias", leg, bias, places)
-        self._wrench_rows("constraint_direction", leg, wrench, places)
+        self._wrench_rows("constraint_direction", leg, (normal, left_out.moment), places)
 
     # ---- placing ---------------------------------------------------------------------
 

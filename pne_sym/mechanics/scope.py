@@ -51,7 +51,7 @@ def _check_independent(
     for index in leg_type.indices:
         leg = manipulator.legs[index]
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        columns = _velocity_vectors(leg, q)[:, freedoms]
+        columns = velocity_vectors(leg, q)[:, freedoms]
         columns = columns[:2] if planar else columns
         sizes = np.linalg.norm(columns, axis=0)
         if not len(freedoms):
@@ -72,7 +72,7 @@ def _check_independent(
             )
 
 
-def _velocity_vectors(leg: Leg, q: Array) -> Array:
+def velocity_vectors(leg: Leg, q: Array) -> Array:
     """Velocity of the connection point per joint rate, (3, joints), in leg axes."""
     origin, rotation = np.zeros(3), np.eye(3)
     axes, origins = [], []

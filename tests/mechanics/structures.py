@@ -52,8 +52,6 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = COMMON | {
 }
 
 REFUSED: dict[str, str] = {
-    "constrained, revolute at the platform": "leave out",
-    "constrained, rigid at the platform": "leave out",
     "planar, rigid at the platform": "platform_joint.kind: value 'rigid'; expected R or S",
     "planar, constrained": "platform_joint.kind: value 'rigid'; expected R or S",
 }

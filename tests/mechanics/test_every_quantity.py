@@ -46,6 +46,7 @@ CONSISTENT_ONLY = re.compile(
     r"(Kc|Ks|Kr|Kd|rho2|disc|root|un|um|uu|from_centre)_\d+"  # steps of the inverse kinematics
     r"|(z|n|n0|l|aside|across|reference|c0|s0)_\d+|n0?_\d+_part"  # frames; they must be orthonormal
     r"|n_c|f_c_part|f_c_size|n_m\d+|nd_m\d+|nu_\d+|m\d+_w_\d+|mu_c|mu2_\d+|volume_c|o_c|phi_c\d+|gamma_c\d+|wn_\d+"
+    r"|(f|size|n|mu|m\d+|mu\d+)_c\d+"  # completed bases
     r"|Hk_a_\d+|M_ya_\d+"
 )
 """Names that have no independent value of their own: what is made of them has one."""
