@@ -5,12 +5,17 @@ Auxiliary directions, fixed in the last link, complete its freedoms to a basis; 
 wrench of an auxiliary direction does no work along any freedom.  Which directions serve is
 settled at home, where the basis must be well conditioned for every leg of the type.
 
+Some of these wrenches may do no work along any motion of the platform: a moment where the
+platform cannot turn, a force through the fixed centre.  They constrain nothing.
+
 Reference: section 3.7, Eqs. 35 to 37.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
 from itertools import combinations, product
 from typing import Any
 
@@ -19,12 +24,14 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
-from pne_sym.mechanics.leg_geometry import LegGeometry, two_across
-from pne_sym.mechanics.scope import axes_at, velocity_vectors
-from pne_sym.mechanics.structure import is_coordinate
-from pne_sym.model.closure import pose_at
-from pne_sym.model.manipulator import JointKind, Leg, Manipulator, PlatformJointKind
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.scope import axes_at, moment_directions, velocity_vectors
+from pne_sym.model.closure import TWIST, Pose, displaced, least_norm, leg_gap, pose_at
+from pne_sym.model.loops import COORDINATES
+from pne_sym.model.manipulator import JointKind, Manipulator, Space
 from pne_sym.vector import (
+    Cross,
+    Dot,
     DualScalar,
     DualVector,
     Vector,
@@ -35,73 +42,172 @@ from pne_sym.vector import (
 )
 
 Array = NDArray[np.float64]
-_PURE = 1e-6  # joint axes make no angle with a moment direction: sine below it
+_PURE = 1e-6  # relative size of what counts as zero
 _BETTER = 1.01  # a choice replaces an earlier one only if it is better by this factor
+_SAMPLES, _REACH, _NEWTON = 4, 0.3, 12  # other poses of a leg: how many, how far, how exact
+
+
+class Kind(StrEnum):
+    """Kinds of auxiliary directions: twists that need not be freedoms of the leg."""
+
+    SLIDE = "slide"
+    """Along a coordinate direction of the last link."""
+    RIGHT_ANGLE = "right angle"
+    """That opens one of the right angles of the platform joint, by number."""
+    TURN = "turn"
+    """About the fixed centre, about a coordinate direction of the last link."""
 
 
 @dataclass(frozen=True)
-class Completion:
-    """Directions that complete the freedoms of a leg type.
+class Auxiliary:
+    """A direction that completes the freedoms of a leg type.
 
     Attributes:
-        forces: coordinate directions of the last link, by number.
-        moments: moment directions, by number; their wrenches are pure moments at home.
+        kind, number: which direction.
+        of_force: its reciprocal wrench has a force part at home.
+        acts: that wrench does work along some motion of the platform.
     """
 
-    forces: tuple[int, ...]
-    moments: tuple[int, ...]
+    kind: Kind
+    number: int
+    of_force: bool = True
+    acts: bool = True
 
 
-def completion_at_home(manipulator: Manipulator, g: LegGeometry, missing: int) -> Completion:
-    """The choice for which the worst conditioned leg of a type is conditioned best."""
-    bases = [_freedoms(manipulator, g, row) for row in range(g.leg_type.count)]
+@dataclass(frozen=True)
+class _State:
+    """A leg and its platform in numbers.
+
+    Attributes:
+        freedoms: (3 + k, m) unit columns: velocity of the connection point in the last link's
+            axes, angular velocity along the k moment directions.
+        effect: (nt, 3 + k) of wrenches at the connection point on the platform's freedoms.
+        turns: (3 + k, 3) turns of the last link about the platform origin.
+    """
+
+    freedoms: Array
+    effect: Array
+    turns: Array
+
+    @property
+    def left_out(self) -> Array:
+        """Orthonormal wrenches (3 + k, c) that do no work along the freedoms."""
+        u, values, _ = np.linalg.svd(self.freedoms)
+        return np.asarray(u[:, int(np.sum(values > _PURE)) :])
+
+
+def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxiliary, ...]:
+    """The choice for which the worst conditioned leg of a type is conditioned best.
+
+    Wrenches that act come first.  A wrench that does no work along any motion of the platform,
+    such as a moment on a platform that cannot turn, is none of the constraints.
+    """
+    home = [next(_states(manipulator, g, row)) for row in range(g.leg_type.count)]
+    missing = home[0].left_out.shape[1]
     transmitted = len(g.pairs)
-    turning = [basis[3:] for basis in bases]
-    pure = max(transmitted - _rank(rows) for rows in turning)
-    choices = list(
-        product(combinations(range(3), missing - pure), combinations(range(transmitted), pure))
-    )
-    best, chosen = 0.0, choices[0]
-    for choice in choices:
-        forces, moments = choice
-        units = np.eye(3 + transmitted)[:, [*forces, *(3 + i for i in moments)]]
-        quality = min(float(np.linalg.svd(np.hstack([b, units]))[1][-1]) for b in bases)
+    slides = [Auxiliary(Kind.SLIDE, k) for k in range(3)]
+    angles = [Auxiliary(Kind.RIGHT_ANGLE, k) for k in range(transmitted)]
+    idle = _idle(manipulator, g)
+    choices: Iterable[tuple[tuple[Auxiliary, ...], tuple[Auxiliary, ...]]]
+    if idle and manipulator.space is Space.SPHERICAL:
+        turns = [Auxiliary(Kind.TURN, k) for k in range(3)]
+        choices = product(
+            combinations(turns, missing - idle), combinations([*slides, *angles], idle)
+        )
+    else:
+        pure = max(_rank(s.left_out) - _rank(s.left_out[:3]) for s in home)
+        choices = product(combinations(slides, missing - pure), combinations(angles, pure))
+    best = 0.0
+    chosen: tuple[Auxiliary, ...] = ()
+    for first, second in choices:
+        quality = min(_quality(s, (*first, *second)) for s in home)
         if quality > _BETTER * best:
-            best, chosen = quality, choice
-    return Completion(*chosen)
+            best, chosen = quality, (*first, *second)
+    return tuple(
+        replace(a, of_force=_has_force(home, chosen, k), acts=k < missing - idle)
+        for k, a in enumerate(chosen)
+    )
 
 
-def _freedoms(manipulator: Manipulator, g: LegGeometry, row: int) -> Array:
-    """Unit columns (3 + moments, freedoms): velocities in the last link's axes, and turning."""
+def _idle(manipulator: Manipulator, g: LegGeometry) -> int:
+    """How many wrenches of the legs never do work along a motion of the platform."""
+    if manipulator.space is Space.SPATIAL:
+        return 0
+    counts: list[int] = []
+    for row in range(g.leg_type.count):
+        for state in _states(manipulator, g, row):
+            wrenches = state.left_out
+            counts.append(wrenches.shape[1] - _rank(state.effect @ wrenches))
+    return min(counts)
+
+
+def _columns(state: _State, chosen: Sequence[Auxiliary]) -> Array:
+    """Freedoms and auxiliary directions (3 + k, 3 + k)."""
+    units = np.eye(len(state.freedoms))
+    own = {
+        Kind.SLIDE: units,
+        Kind.RIGHT_ANGLE: units[:, 3:],
+        Kind.TURN: state.turns,
+    }
+    columns = [own[a.kind][:, a.number] for a in chosen]
+    return np.column_stack([*columns, state.freedoms])
+
+
+def _quality(state: _State, chosen: Sequence[Auxiliary]) -> float:
+    return float(np.linalg.svd(_columns(state, chosen))[1][-1])
+
+
+def _has_force(states: list[_State], chosen: Sequence[Auxiliary], k: int) -> bool:
+    """Whether the wrench of an auxiliary direction has a force part for every leg."""
+    forces = []
+    for state in states:
+        dual = np.linalg.inv(_columns(state, chosen))[k]
+        forces.append(float(np.linalg.norm(dual[:3]) / np.linalg.norm(dual)))
+    return min(forces) > _PURE
+
+
+def _states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_State]:
+    """A leg at home, then at other poses that it reaches, whatever the other legs do."""
     index = g.leg_type.indices[row]
-    leg = manipulator.legs[index]
+    leg, space = manipulator.legs[index], manipulator.space
     start = sum(len(other.joints) for other in manipulator.legs[:index])
     q = np.array(manipulator.home.q[start : start + len(leg.joints)])
-    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
+    X = np.array(manipulator.home.X[: len(COORDINATES[space])])
+    rng, twist = np.random.default_rng(0), list(TWIST[space])
+    for _ in range(_SAMPLES):
+        pose = pose_at(space, list(X), manipulator.fixed_centre)
+        yield _state(manipulator, g, row, q, pose)
+        for newton in range(_NEWTON):
+            pose = pose_at(space, list(X), manipulator.fixed_centre)
+            gap, by_q, by_twist = leg_gap(leg, q, pose)
+            system = np.hstack([by_twist[:, twist], by_q])
+            if newton:
+                step = -least_norm(system, gap)
+            else:
+                move = rng.uniform(-_REACH, _REACH, system.shape[1])
+                step = move - least_norm(system, system @ move)
+            X, q = displaced(space, X, step[: len(twist)]), q + step[len(twist) :]
+
+
+def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: Pose) -> _State:
+    leg = g.leg_type.legs[row]
     free = [j for j, joint in enumerate(leg.joints) if not joint.extra]
     axes, last = axes_at(leg, q)
     turns = [joint.kind is not JointKind.PRISMATIC for joint in leg.joints]
-    angular = np.array(axes).T * turns
-    linear = velocity_vectors(leg, q)
+    leg_R_platform = np.array(leg.base_frame).T @ pose.R
     tip = last @ g.canonical[g.group[g.count]][row]
-    directions = _moment_directions(leg, last, np.array(leg.base_frame).T @ pose.R)
-    columns = np.vstack([tip.T @ linear, directions[: len(g.pairs)] @ angular])[:, free]
-    return np.asarray(columns / np.linalg.norm(columns, axis=0))
-
-
-def _moment_directions(leg: Leg, last: Array, leg_R_platform: Array) -> Array:
-    """Directions (k, 3) of the moments that a leg's platform joint transmits, in leg axes."""
-    end = leg.platform_joint
-    if end.kind is PlatformJointKind.RIGID:
-        return np.asarray(np.roll(last.T, -2, axis=0))
-    if end.axis_link is None or end.axis_platform is None:
-        return np.zeros((0, 3))
-    platform = leg_R_platform @ np.array(end.axis_platform)
-    if end.kind is PlatformJointKind.UNIVERSAL:
-        return np.cross(last @ np.array(end.axis_link), platform)[None]
-    number = sp.Integer if is_coordinate(end.axis_link) else sp.Float
-    across = np.array(two_across([number(c) for c in end.axis_link]), dtype=float)
-    return np.asarray(np.cross(across @ last.T, platform))
+    arm = leg_R_platform @ np.array(leg.platform_point)
+    n = moment_directions(g.leg_type, leg, last, leg_R_platform)
+    columns = np.vstack([tip.T @ velocity_vectors(leg, q), n @ (np.array(axes).T * turns)])[:, free]
+    about_origin = np.vstack([tip.T @ np.cross(tip.T, arm).T, n @ tip])
+    effect = {
+        Space.TRANSLATIONAL: np.eye(3, len(columns)),
+        Space.SPHERICAL: about_origin.T,
+        Space.SPATIAL: np.vstack([np.eye(3, len(columns)), about_origin.T]),
+    }
+    return _State(
+        columns / np.linalg.norm(columns, axis=0), effect[manipulator.space], about_origin
+    )
 
 
 def _rank(rows: Array) -> int:
@@ -116,11 +222,13 @@ class LeftOut:
         force: of the leg on the platform at the connection point, per unit lambda.
         amounts: along the moment directions, per unit lambda.
         moment: the moment that they make.
+        acts: it does work along some motion of the platform.
     """
 
     force: Vector
     amounts: tuple[Any, ...] = ()
     moment: Vector = ZeroVector
+    acts: bool = True
 
 
 @dataclass(frozen=True)
@@ -143,39 +251,54 @@ class Freedoms:
 
 
 def completed_wrenches(
-    book: Book, g: LegGeometry, chosen: Completion, freedoms: Freedoms
+    book: Book, g: LegGeometry, chosen: Sequence[Auxiliary], freedoms: Freedoms
 ) -> list[LeftOut]:
     """The wrenches reciprocal to a leg's freedoms: of unit force, or pure unit moments."""
-    count, frame = len(chosen.forces) + len(chosen.moments), freedoms.frame
-    units = [direction(book, g, axis, frame) for axis in chosen.forces]
-    vectors = [*units, *(ZeroVector for _ in chosen.moments), *freedoms.vectors]
-    rows = [
-        [*(sp.S.Zero for _ in units), *(sp.Integer(int(i == k)) for k in chosen.moments), *row]
-        for i, row in enumerate(freedoms.rows)
-    ]
+    columns = [_column(book, g, auxiliary, freedoms) for auxiliary in chosen]
+    vectors = [*(vector for vector, _ in columns), *freedoms.vectors]
+    rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(freedoms.rows)]
     screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
     found, duals, amounts = [], [], []
-    for k in range(count):
-        wrench = _dual(book, g, k, screws, len(rows), frame)
-        duals.append(wrench[0])
-        amounts.append(wrench[1])
-        of_force = k < len(units)
-        found.append(
-            _unit_wrench(book, g, freedoms.directions, k + 1, wrench, frame, of_force=of_force)
-        )
+    for k, auxiliary in enumerate(chosen):
+        force, moments = _dual(book, g, k, screws, len(rows), freedoms.frame)
+        duals.append(force)
+        amounts.append(moments)
+        found.append(_unit_wrench(book, g, freedoms, k + 1, force, moments, auxiliary))
     frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
     book.bases.append(
         ReciprocalBasis(
             g.leg_type.name,
             tuple(vectors),
             tuple(duals),
-            (*(sp.S.One for _ in range(count)), *freedoms.scales),
+            (*(sp.S.One for _ in chosen), *freedoms.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
             tuple(amounts),
         )
     )
     return found
+
+
+def _column(
+    book: Book, g: LegGeometry, auxiliary: Auxiliary, freedoms: Freedoms
+) -> tuple[Any, list[Any]]:
+    """Velocity of the connection point, and angular velocity along the moment directions."""
+    number = auxiliary.number
+    if auxiliary.kind is Kind.RIGHT_ANGLE:
+        return ZeroVector, [sp.Integer(int(i == number)) for i in range(len(freedoms.rows))]
+    a = direction(book, g, number, freedoms.frame)
+    if auxiliary.kind is Kind.SLIDE:
+        return a, [sp.S.Zero for _ in freedoms.rows]
+    velocity = book.define(
+        g.name(f"t_c{number + 1}"),
+        Cross(a, g.platform_point),
+        rf"\mathbf t_{{c{number + 1}}}",
+        "velocity of the connection point as it turns about the fixed centre",
+        Law.GEOMETRY,
+        unit="m",
+        body=freedoms.frame,
+    )
+    return velocity, [Dot(a, n) for n in freedoms.directions]
 
 
 def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:
@@ -220,15 +343,14 @@ def _dual(
 def _unit_wrench(
     book: Book,
     g: LegGeometry,
-    directions: list[Any],
+    freedoms: Freedoms,
     number: int,
-    wrench: tuple[Any, tuple[Any, ...]],
-    frame: str,
-    *,
-    of_force: bool,
+    force: Any,
+    amounts: tuple[Any, ...],
+    auxiliary: Auxiliary,
 ) -> LeftOut:
     """The wrench for a force, or a moment, of size one."""
-    force, amounts = wrench
+    directions, frame, of_force = freedoms.directions, freedoms.frame, auxiliary.of_force
     size = book.define(
         g.name(f"size_c{number}"),
         norm(force if of_force else _moment(amounts, directions)),
@@ -260,7 +382,7 @@ def _unit_wrench(
         for i, amount in enumerate(amounts, 1)
     )
     if not moments:
-        return LeftOut(unit)
+        return LeftOut(unit, acts=auxiliary.acts)
     moment = book.define(
         g.name(f"mu_c{number}"),
         _moment(moments, directions),
@@ -270,7 +392,7 @@ def _unit_wrench(
         body=frame,
         reference="Eq. 35",
     )
-    return LeftOut(unit, moments, moment)
+    return LeftOut(unit, moments, moment, auxiliary.acts)
 
 
 def _moment(amounts: tuple[Any, ...], directions: list[Any]) -> Vector:

@@ -37,7 +37,7 @@ def directions_left_out(
         return [_unit(book, g, "n_c", Cross(first, second))]
     (only,) = (motion.v[j] for j in joints)
     if axis is None:
-        auxiliary = direction(book, g, g.completion.forces[0], g.frame("axes", g.group[g.count]))
+        auxiliary = direction(book, g, g.completion[0].number, g.frame("axes", g.group[g.count]))
         axis = _unit(book, g, "n_c1", Cross(auxiliary, only))
     return [axis, _unit(book, g, "n_c", Cross(axis, only))]
 

@@ -113,7 +113,7 @@ def _derive_leg(
     missing = (2 if space.planar else 3) + len(g.pairs) - len(freedoms)
     constrained = missing > 0
     if constrained and not space.planar:
-        g.completion = completion_at_home(manipulator, g, missing)
+        g.completion = completion_at_home(manipulator, g)
     flat = constrained and not space.planar and not g.pairs
     normal = axis_across(g, freedoms) if flat else None
     before = book.mark()

@@ -79,7 +79,7 @@ class LegGeometry:
     bent_helices: set[int] = field(default_factory=set)
     unseen: set[int] = field(default_factory=set)
     pure_moment: bool = False
-    completion: Any = None
+    completion: tuple[Any, ...] = ()
 
     @property
     def count(self) -> int:
@@ -620,7 +620,7 @@ class _Builder:
         if end.kind is PlatformJointKind.UNIVERSAL:
             self._pair(0, link, platform)
             return
-        for k, across in enumerate(two_across(link)):
+        for k, across in enumerate(two_across(link, main_component(self.type))):
             self._pair(k, across, platform)
 
     def _end_axis(self, name: str, axis: Any) -> Any:
@@ -677,14 +677,26 @@ class _Builder:
         )
 
 
-def two_across(axis: Any) -> list[Any]:
-    """Two directions across an axis given by components; unit where the axis is exact."""
-    x, y, z = axis
+def main_component(leg_type: LegType) -> int:
+    """Number of the component that the platform joint's axis has in the last link of every leg."""
+    sizes = np.abs(leg_type.over_legs(lambda leg: leg.platform_joint.axis_link))
+    return int(np.argmax(sizes.min(axis=0)))
+
+
+def two_across(axis: Any, main: int) -> list[Any]:
+    """Two directions across an axis given by components; unit where the axis is exact.
+
+    Args:
+        axis: components, numbers or symbols.
+        main: number of a component that is not zero.
+    """
+    others = [(main + k) % 3 for k in (1, 2)]
     if all(c.is_Integer for c in axis):
-        main = next(k for k in range(3) if axis[k] != 0)
-        return [tuple(sp.Integer(int(v)) for v in _E[(main + k) % 3]) for k in (1, 2)]
-    # general axis: cross products with the axes; any two independent directions across it serve
-    return [(sp.S.Zero, -z, y), (z, sp.S.Zero, -x)]
+        return [tuple(sp.Integer(int(v)) for v in _E[k]) for k in others]
+    # general axis: cross products with two coordinate directions, independent by its main component
+    x, y, z = axis
+    products = [(sp.S.Zero, -z, y), (z, sp.S.Zero, -x), (-y, x, sp.S.Zero)]
+    return [products[k] for k in others]
 
 
 def _rodrigues(axis: Array, angle: float) -> Array:

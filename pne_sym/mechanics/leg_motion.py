@@ -16,7 +16,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
-from pne_sym.mechanics.completion import Freedoms, LeftOut
+from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches
 from pne_sym.mechanics.constraints import (
     directions_left_out,
     plane_normal,
@@ -345,8 +345,9 @@ class MotionWriter:
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
         freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), motion.n,
                             self.tip_frame())  # fmt: skip
-        motion.normals = self._left_out(joints, missing, freedoms)
-        for left_out in motion.normals:
+        wrenches = self._left_out(joints, missing, freedoms)
+        motion.normals = [left_out for left_out in wrenches if left_out.acts]
+        for left_out in wrenches:
             vectors.append(left_out.force)
             scales.append(sp.S.One)
             for row, n in zip(rows, motion.n, strict=True):
@@ -463,6 +464,8 @@ class MotionWriter:
         """Wrenches that do no work along the leg's freedoms."""
         if missing == 0:
             return []
+        if not all(auxiliary.acts for auxiliary in self.g.completion):
+            return completed_wrenches(self.book, self.g, self.g.completion, freedoms)
         if self.motion.n:
             return wrenches_left_out(self.book, self.g, self.motion, joints, freedoms)
         normals = directions_left_out(

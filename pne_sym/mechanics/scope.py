@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
+import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.mechanics.structure import LegType
+from pne_sym.mechanics.leg_geometry import main_component, two_across
+from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.model.closure import pose_at
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Leg, Manipulator, PlatformJointKind
 
@@ -39,8 +42,7 @@ def check_scope(manipulator: Manipulator, leg_type: LegType, space: TaskSpace) -
             f"{len(freedoms)} freedoms where the platform joint leaves {most} to be determined",
             f"at most {most} joints, or the surplus ones marked extra = true",
         )
-    if not moments:
-        _check_independent(manipulator, leg_type, freedoms, planar=space.planar)
+    _check_independent(manipulator, leg_type, freedoms, planar=space.planar)
 
 
 def _check_independent(
@@ -48,11 +50,16 @@ def _check_independent(
 ) -> None:
     """Refuse a leg whose freedoms are dependent at home."""
     starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
+    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
     for index in leg_type.indices:
         leg = manipulator.legs[index]
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
         columns = velocity_vectors(leg, q)[:, freedoms]
-        columns = columns[:2] if planar else columns
+        if planar:
+            columns = columns[:2]
+        else:
+            turning = _turning(leg_type, leg, q, pose.R)
+            columns = np.vstack([columns, turning[:, freedoms]])
         sizes = np.linalg.norm(columns, axis=0)
         if not len(freedoms):
             raise SpecError(
@@ -66,7 +73,7 @@ def _check_independent(
             raise SpecError(
                 manipulator.name,
                 f"legs[{index}]",
-                "the leg is singular at home: its freedoms move the connection point along "
+                "the leg is singular at home: its freedoms move the platform joint along "
                 "dependent directions",
                 "a home position off the singularity, or the superfluous joint marked extra = true",
             )
@@ -94,6 +101,38 @@ def velocity_vectors(leg: Leg, q: Array) -> Array:
             column = column + joint.pitch * e
         columns.append(column)
     return np.stack(columns, axis=1)
+
+
+def _turning(leg_type: LegType, leg: Leg, q: Array, base_R_platform: Array) -> Array:
+    """Angular velocity along the moment directions per joint rate, (moments, joints)."""
+    axes, last = axes_at(leg, q)
+    turns = [joint.kind is not JointKind.PRISMATIC for joint in leg.joints]
+    leg_R_platform = np.array(leg.base_frame).T @ base_R_platform
+    directions = moment_directions(leg_type, leg, last, leg_R_platform)
+    return np.asarray(directions @ (np.array(axes).T * turns))
+
+
+def moment_directions(leg_type: LegType, leg: Leg, last: Array, leg_R_platform: Array) -> Array:
+    """Directions (k, 3) of the moments that a leg's platform joint transmits, in leg axes.
+
+    Args:
+        leg_type: of the leg.
+        leg: one of its legs.
+        last: rotation from the last link's to leg axes.
+        leg_R_platform: rotation from platform to leg axes.
+    """
+    end = leg.platform_joint
+    if end.kind is PlatformJointKind.RIGID:
+        return np.asarray(np.roll(last.T, -2, axis=0))
+    if end.axis_link is None or end.axis_platform is None:
+        return np.zeros((0, 3))
+    platform = leg_R_platform @ np.array(end.axis_platform)
+    if end.kind is PlatformJointKind.UNIVERSAL:
+        return np.cross(last @ np.array(end.axis_link), platform)[None]
+    number = sp.Integer if is_coordinate(end.axis_link) else sp.Float
+    link = [number(c) for c in end.axis_link]
+    across = np.array(two_across(link, main_component(leg_type)), dtype=float)
+    return np.asarray(np.cross(across @ last.T, platform))
 
 
 def axes_at(leg: Leg, q: Array) -> tuple[list[Array], Array]:
