@@ -52,6 +52,7 @@ _S, _END_R = PlatformJointKind.SPHERICAL, PlatformJointKind.REVOLUTE
 _END_U, _RIGID = PlatformJointKind.UNIVERSAL, PlatformJointKind.RIGID
 _MOMENTS = {_S: 0, _END_U: 1, _END_R: 2, _RIGID: 3}
 _AXES = np.eye(3)
+_NOWHERE = (False, False, False)
 
 _SPACES = {
     Space.SPATIAL: 0.36,
@@ -106,6 +107,7 @@ class _LegPlan:
         present: which components of its offset there are.
         link_axis, platform_axis: a direction's index, or None.
         missing: freedoms that the leg lacks.
+        at_origin: it meets the platform at its origin.
     """
 
     joints: tuple[_JointPlan, ...]
@@ -114,6 +116,7 @@ class _LegPlan:
     link_axis: int | None
     platform_axis: int | None
     missing: int
+    at_origin: bool = False
 
 
 def draw(seed: int, *, light: bool = False) -> Manipulator:
@@ -148,7 +151,7 @@ class _Drawing:
         count = int(rng.integers(least + (rng.random() < 0.7), most + 1))
         types = min(
             count,
-            1 + int(rng.choice(3, p=[0.85, 0.15, 0.0] if self.light else [0.4, 0.35, 0.25])),
+            1 + int(rng.choice(3, p=[0.85, 0.15, 0.0] if self.light else [0.6, 0.3, 0.1])),
         )
         plans = [self._leg_plan() for _ in range(types)]
         owner = self._owners(plans, count)
@@ -178,10 +181,12 @@ class _Drawing:
 
     def _leg_plan(self) -> _LegPlan:
         rng = self.rng
+        if self.space is Space.SPHERICAL and rng.random() < 0.15:
+            return self._wrist_plan()
         if self.planar:
             kinds, weights = [_END_R, _S], [0.8, 0.2]
         else:
-            kinds, weights = [_S, _END_U, _END_R, _RIGID], [0.5, 0.2, 0.16, 0.14]
+            kinds, weights = [_S, _END_U, _END_R, _RIGID], [0.55, 0.2, 0.15, 0.1]
         end = kinds[int(rng.choice(len(kinds), p=weights))]
         needed = 2 if self.planar else 3 + _MOMENTS[end]
         if self.light:  # chains of three joints at most
@@ -198,6 +203,16 @@ class _Drawing:
         missing = max(0, needed - length + extras)
         return _LegPlan(tuple(joints), end, self._present(), *axes, missing)
 
+    def _wrist_plan(self) -> _LegPlan:
+        """Two or three revolute joints about the fixed centre, and one at the platform."""
+        extras = 0 if self.light else int(self.rng.choice(2, p=[0.7, 0.3]))
+        joints = [
+            _JointPlan(_R, self._direction(), _NOWHERE, self._link(), extra=k < extras)
+            for k in range(2 + extras)
+        ]
+        axes = self._direction(), self._direction()
+        return _LegPlan(tuple(joints), _END_R, _NOWHERE, *axes, 0, at_origin=True)
+
     def _joints(self, length: int) -> list[_JointPlan]:
         rng, joints = self.rng, []
         while len(joints) < length:
@@ -213,11 +228,10 @@ class _Drawing:
         first = self._joint(before)
         if not macro:
             return [first]
-        none = (False, False, False)
         if macro == "C":
             kinds = [_R, _P] if self.rng.random() < 0.7 else [_P, _R]
             hollow = replace(first, kind=kinds[0], link="none")
-            return [hollow, replace(first, kind=kinds[1], present=none, tied="parallel")]
+            return [hollow, replace(first, kind=kinds[1], present=_NOWHERE, tied="parallel")]
         parts = [replace(first, kind=_R)]
         for _ in range({"U": 1, "S": 2}[macro]):
             parts[-1] = replace(parts[-1], link="none")
@@ -225,7 +239,9 @@ class _Drawing:
             if first.turned_in is not None:
                 across = ((parts[-1].turned_in or 0) + int(self.rng.integers(1, 3))) % 3
             parts.append(
-                _JointPlan(_R, across, none, self._link(), "" if across is not None else "across")
+                _JointPlan(
+                    _R, across, _NOWHERE, self._link(), "" if across is not None else "across"
+                )
             )
         return parts
 
@@ -349,7 +365,8 @@ class _Drawing:
         if rng.random() < 0.2:
             tilt *= 0.0
         frame = rotation_from_quaternion(quaternion_of_vector(tilt))
-        seat = ZERO3 if self.space is Space.POINT else self._vector(0.4)
+        at_origin = plan.at_origin or self.space is Space.POINT
+        seat = ZERO3 if at_origin else self._vector(0.4)
         end = PlatformJoint(plan.end, offset=self._offset(plan.present))
         leg = Leg(ZERO3, matrix3(frame), joints, end, seat)
         rotation = platform_rotation(empty, pose)
@@ -441,7 +458,8 @@ class _Drawing:
         if freedoms < 1:
             return None
         wish = int(rng.choice([0, 1, 2, -1], p=[0.7, 0.12, 0.1, 0.08]))
-        by_leg = not self.light and rng.random() < 0.15  # marks of each leg, not of each type
+        # Marks of each leg, not of each type: every leg may become a type of its own.
+        by_leg = not self.light and len(found.legs) < 4 and rng.random() < 0.3
         for _ in range(60):
             marks = self._some_marks(found, owner, by_leg=by_leg)
             drives = sum(map(sum, marks))
