@@ -19,6 +19,10 @@ DOCUMENTS = $(wildcard README.md docs/*.md generated/*/*.md)
 # Two workers, a file each at a time: models are compiled once per file.
 PYTEST_ARGS ?= -n 2 --dist loadfile
 
+# Mechanisms drawn at random by `make random`: how many, and the first seed.
+RANDOM_COUNT ?= 600
+RANDOM_SEED ?= 0
+
 # --- for users ----------------------------------------------------------------
 
 .PHONY: help
@@ -92,6 +96,10 @@ wheel-test: $(VENV)/dev.stamp ## Build sdist and wheel, use the wheel from an em
 .PHONY: fuzz
 fuzz: $(VENV)/test.stamp ## Give pne-gen 100,000 broken specifications (FUZZ_CASES, FUZZ_SEED)
 	$(BIN)/python tests/fuzz/fuzz.py --cases $(or $(FUZZ_CASES),100000) --seed $(or $(FUZZ_SEED),0)
+
+.PHONY: random
+random: $(VENV)/test.stamp ## Derive RANDOM_COUNT (600) mechanisms drawn from RANDOM_SEED on, compare all
+	$(BIN)/python -m tests.random.tally --count $(RANDOM_COUNT) --seed $(RANDOM_SEED) --jobs 2
 
 .PHONY: schema
 schema: $(VENV)/core.stamp ## Write docs/pne_sym.schema.json

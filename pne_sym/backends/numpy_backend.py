@@ -202,7 +202,14 @@ class _Writer:
         """Body of the function that computes the prepared values."""
         program, table = self.bundle.program, self.bundle.derivation.parameters
         used = {s.name for block in program.prepare for s in _block_symbols(block)}
+        formulas = [self.text(a.expr) for block in program.prepare for a in block.assignments]
         lines = ["sqrt = np.sqrt"]
+        # Angles can be fixed by the parameters alone: of a leg that keeps a locked orientation.
+        lines += [
+            f"{name} = np.{of_numpy}"
+            for name, of_numpy in (("sin", "sin"), ("cos", "cos"), ("atan2", "arctan2"))
+            if any(f"{name}(" in formula for formula in formulas)
+        ]
         # named, so that one more leg does not change every line that runs over the legs
         lines += [f'_{t} = (len(_LEGS["{t}"]),)' for t in self.bundle.leg_counts]
         for name, (parameter, index) in table.entries.items():

@@ -177,7 +177,7 @@ class ReciprocalBasis:
     Attributes:
         id: the equations' id.
         vectors: names of the v_k; two in the plane, three in space.
-        duals: names of the w_j; None where nobody needs one.
+        duals: names of the w_j; of the first few only, where no other is needed.
         scales: sizes of the v_k, made of parameters alone, by which a singular
             basis is recognised.
         frames: names of frames in which the basis may be solved.

@@ -53,12 +53,13 @@ class Lowering:
         self._dual = {
             w.name: (basis, k)
             for basis in derivation.bases
+            if len(basis.duals) == len(basis.vectors)
             for k, w in enumerate(basis.duals)
-            if w is not None
         }
         self._dual_amount = {
             amount.name: (basis, k, i)
             for basis in derivation.bases
+            if len(basis.duals) == len(basis.vectors)
             for k, amounts in enumerate(basis.moment_duals)
             for i, amount in enumerate(amounts)
         }
@@ -530,10 +531,22 @@ class Lowering:
 
     def _dual_scalar(self, expr: Any) -> Atom:
         """Moment part i of reciprocal wrench k."""
-        k, i = int(expr.args[0]), int(expr.args[1])
-        basis = next(b for b in self.d.bases if sp.Tuple(*b.vectors) == expr.args[2])
-        weights = [sp.S.One if j == k else sp.S.Zero for j in range(len(basis.duals))]
-        return self._wrench(basis, weights)[3 + i]
+        basis, weights = self._unit_weights(expr)
+        return self._wrench(basis, weights)[3 + int(expr.args[1])]
+
+    def _vector_dual(self, expr: Any, frame: str, hint: str) -> Triple:
+        """Force part of reciprocal wrench k."""
+        return self._combination(*self._unit_weights(expr), frame)
+
+    def _unit_weights(self, expr: Any) -> tuple[ReciprocalBasis, list[Any]]:
+        """Basis of a reciprocal wrench, and one for it, zero for the others."""
+        k, (vectors, rows) = int(expr.args[0]), expr.args[-2:]
+        basis = next(
+            b
+            for b in self.d.bases
+            if sp.Tuple(*b.vectors) == vectors and sp.Tuple(*(sp.Tuple(*r) for r in b.rows)) == rows
+        )
+        return basis, [sp.S.One if j == k else sp.S.Zero for j in range(len(basis.vectors))]
 
     def _dual_vector(self, name: str, frame: str) -> Triple:
         basis, k = self._dual[name]
@@ -819,6 +832,7 @@ _VECTOR_OPERATIONS: dict[type, Any] = {
     n.Apply: Lowering._vector_apply,
     n.Axial: Lowering._vector_axial,
     n.Perp: Lowering._vector_perp,
+    n.DualVector: Lowering._vector_dual,
     n.VectorLegSum: Lowering._vector_total,
 }
 _TENSOR_OPERATIONS: dict[type, Any] = {

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-import sympy as sp
-
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
 from pne_sym.mechanics.branches import branch_signs
-from pne_sym.mechanics.constraints import axis_across
+from pne_sym.mechanics.completion import completion_at_home
+from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import build_geometry
@@ -16,7 +15,7 @@ from pne_sym.mechanics.leg_motion import MotionWriter
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
-from pne_sym.mechanics.scope import check_scope, screws_at_home
+from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
 from pne_sym.model.manipulator import JointKind, Manipulator
@@ -86,7 +85,7 @@ def _derive_leg(
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", _GEOMETRY, prefix)
     g = build_geometry(book, leg_type, suffix, space.planar)
-    g.screws = screws_at_home(manipulator, leg_type)
+    g.pure_moment = force_vanishes(manipulator, g)
     bodies = introduce_bodies(book, g, space.planar)
     # Links that all turn together are one body; else composite bodies cost less.
     g.composite = len({body.group for body in bodies}) > 1
@@ -113,7 +112,10 @@ def _derive_leg(
             body=g.frame("axes", 0),
         )
     freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-    constrained = len(freedoms) < (2 if space.planar else 3) + len(g.pairs)
+    missing = (2 if space.planar else 3) + len(g.pairs) - len(freedoms)
+    constrained = missing > 0
+    if constrained and not space.planar:
+        g.completion = completion_at_home(manipulator, g)
     flat = constrained and not space.planar and not g.pairs
     normal = axis_across(g, freedoms) if flat else None
     before = book.mark()
@@ -238,13 +240,9 @@ def _potential(
         g = leg.g
         terms: list[Any] = []
         for body in leg.dynamics.bodies:
-            if body.at_tip:
-                mass = sp.S.Zero
-                place = vector_sum((platform.t, g.platform_point))
-            else:
-                mass = body.mass
-                place = vector_sum((g.base_point, *_path(motion, g, body.joint)))
-            terms.append(mass * place + body.first_moment)
+            if not body.at_tip:  # its mass is counted with the platform
+                terms.append(body.mass * vector_sum((g.base_point, *_path(motion, g, body.joint))))
+            terms.append(body.first_moment)
         moment = vector_sum(terms)
         if moment != ZeroVector:
             total = total + sum_over_legs(-Dot(platform.gravity, moment), leg.name)

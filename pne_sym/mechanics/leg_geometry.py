@@ -20,7 +20,6 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
-from pne_sym.mechanics.scope import across
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, norm
@@ -55,7 +54,8 @@ class LegGeometry:
         zero_angle: (legs, 2) numeric (cos, sin) of zero_turn, by joint.
         bent_helices: helical joints that turn the connection point about their axes.
         unseen: revolute joints whose axes pass through the connection point.
-        screws: what the joints do at the platform joint at home, (legs, 3 + moments, joints).
+        pure_moment: the wrench that the leg leaves out is a pure moment at home.
+        completion: directions that complete the freedoms of a leg that lacks some, in space.
         composite: the leg's inertia is written in the accelerations of its joints.
         exact_frames: groups whose canonical axes are coordinate directions.
     """
@@ -79,7 +79,8 @@ class LegGeometry:
     zero_angle: dict[int, Array] = field(default_factory=dict)
     bent_helices: set[int] = field(default_factory=set)
     unseen: set[int] = field(default_factory=set)
-    screws: Any = None
+    pure_moment: bool = False
+    completion: tuple[Any, ...] = ()
     composite: bool = False
 
     @property
@@ -717,6 +718,12 @@ class _Builder:
             unit="m",
             parameter=True,
         )
+
+
+def across(leg_type: LegType) -> int:
+    """The coordinate direction of the last link that is most across the platform joint's axis."""
+    axes = leg_type.over_legs(lambda leg: leg.platform_joint.axis_link)
+    return int(np.argmin(np.abs(axes).max(axis=0)))
 
 
 def _rodrigues(axis: Array, angle: float) -> Array:

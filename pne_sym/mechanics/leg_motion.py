@@ -16,8 +16,8 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches
 from pne_sym.mechanics.constraints import (
-    LeftOut,
     directions_left_out,
     plane_normal,
     wrenches_left_out,
@@ -236,6 +236,7 @@ class MotionWriter:
         self.q = inverse.q
         self.x = inverse.x
         self.S = inverse.S
+        self.is_closed = inverse.is_closed
         self.motion = LegMotion()
 
     def write(self, prefix: str) -> LegMotion:
@@ -334,7 +335,9 @@ class MotionWriter:
             self.motion.v[j] = self._velocity_vector(j, rods)
         first = turning[0] if turning else None
         reached = vector_sum((self.spans[0], rods[first] if first else ZeroVector))
-        self.motion.gap = self.S - reached
+        # Three joints with a closed form leave no gap, they miss right angles alone.
+        closes = self.is_closed and g.pairs and sum(not g.is_extra(j) for j in self.motion.v) == 3
+        self.motion.gap = ZeroVector if closes else self.S - reached
         self._basis()
         self._rates()
 
@@ -370,8 +373,11 @@ class MotionWriter:
         self._moment_directions()
         rows = [[Dot(g.e[j], n) if g.turns(j) else sp.S.Zero for j in joints] for n in motion.n]
         missing = (2 if self.space.planar else 3) + len(rows) - len(joints)
-        motion.left_out = self._left_out(joints, missing)
-        for wrench in motion.left_out:
+        frame = self.tip_frame()
+        freedoms = Freedoms(list(vectors), [list(r) for r in rows], list(scales), motion.n, frame)
+        wrenches = self._left_out(joints, missing, freedoms)
+        motion.left_out = [wrench for wrench in wrenches if wrench.acts]
+        for wrench in wrenches:
             vectors.append(wrench.force)
             scales.append(sp.S.One)
             for row, amount in zip(rows, wrench.amounts, strict=True):
@@ -486,15 +492,18 @@ class MotionWriter:
             )
         return duals
 
-    def _left_out(self, joints: list[int], missing: int) -> list[LeftOut]:
+    def _left_out(self, joints: list[int], missing: int, freedoms: Freedoms) -> list[LeftOut]:
         """Wrenches that do no work along the leg's freedoms."""
         if missing == 0:
             return []
+        if not all(auxiliary.acts for auxiliary in self.g.completion):
+            return completed_wrenches(self.book, self.g, self.g.completion, freedoms)
         if self.motion.n:
-            return wrenches_left_out(self.book, self.g, self.motion, joints, missing)
-        return directions_left_out(
+            return wrenches_left_out(self.book, self.g, self.motion, joints, freedoms)
+        normals = directions_left_out(
             self.book, self.g, self.motion, joints, missing, self.space.planar
         )
+        return [LeftOut(normal) for normal in normals]
 
     def _rates(self) -> None:
         g, book, motion = self.g, self.book, self.motion

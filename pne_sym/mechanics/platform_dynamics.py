@@ -12,7 +12,7 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Book, Law, Output
-from pne_sym.mechanics.constraints import LeftOut
+from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import LegMotion
@@ -507,24 +507,37 @@ class PlatformWriter:
         )
         column = {key: c for c, key in enumerate(order)}
         for leg in self.legs:
-            for k, wrench in enumerate(leg.motion.left_out):
+            for k, left_out in enumerate(leg.motion.left_out):
                 places = tuple(column[(i, k)] for i in leg.g.leg_type.indices)
-                amounts = zip(wrench.amounts, leg.motion.n, strict=True)
-                pair = wrench.force, vector_sum(amount * n for amount, n in amounts)
+                wrench = left_out.force, left_out.moment
                 self._force_column(
-                    "Hk", leg, pair, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
+                    "Hk", leg, wrench, f"Hk_a_{k + 1}", rf"\mathbf H_{{k\alpha,{k + 1}}}", places
                 )
-                self._constraint(leg, k, wrench, places)
-                self._wrench_rows("constraint_direction", leg, pair, places)
+                self._constrained_extras(leg, left_out, places)
+                self._constraint(leg, k, left_out, places)
 
-    def _constraint(self, leg: Leg, k: int, wrench: LeftOut, places: tuple[int, ...]) -> None:
+    def _constrained_extras(self, leg: Leg, left_out: LeftOut, places: tuple[int, ...]) -> None:
+        """What the constraint does along the extra freedoms of its leg."""
+        for other, j, rows in self._extras():
+            if other is not leg:
+                continue
+            work = Dot(left_out.force, leg.motion.v[j])
+            if leg.g.turns(j):
+                work = work + Dot(left_out.moment, leg.g.e[j])
+            if work != 0:
+                self.book.outputs.append(
+                    Output("Hk", -work, ((0, 0),), ((0, 0),), leg.name, rows, places)
+                )
+
+    def _constraint(self, leg: Leg, k: int, left_out: LeftOut, places: tuple[int, ...]) -> None:
         """The constraint, and its second derivative (Eq. 37)."""
         book, g, motion = self.book, leg.g, leg.motion
-        miss: Any = Dot(wrench.force, motion.gap)
-        turning: Any = sp.S.Zero
-        for amount, pair, nu in zip(wrench.amounts, g.pairs, motion.nu, strict=True):
-            miss = miss - amount * Dot(*pair)
-            turning = turning + amount * nu
+        normal = left_out.force
+        # By how much the position is missed, and the right angles of the platform joint.
+        amounts = left_out.amounts
+        angles = [a * Dot(*pair) for a, pair in zip(amounts, g.pairs, strict=True)]
+        miss = Dot(normal, motion.gap) - sp.Add(*angles)
+        turning = sp.Add(*(a * nu for a, nu in zip(amounts, motion.nu, strict=True)))
         gap = book.define(
             g.name(f"phi_c{k + 1}"),
             miss,
@@ -542,7 +555,7 @@ class PlatformWriter:
         )
         bias = book.define(
             g.name(f"gamma_c{k + 1}"),
-            Dot(wrench.force, rest) + turning,
+            Dot(normal, rest) + turning,
             rf"\gamma_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
             Law.LOOP_CLOSURE,
@@ -550,6 +563,7 @@ class PlatformWriter:
             reference="Eq. 37",
         )
         self._leg_scalar("constraint_bias", leg, bias, places)
+        self._wrench_rows("constraint_direction", leg, (normal, left_out.moment), places)
 
     # ---- placing ---------------------------------------------------------------------
 

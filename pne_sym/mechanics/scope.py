@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.mechanics.leg_geometry import across
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.mechanics.task_space import TaskSpace
 from pne_sym.model.closure import pose_at
@@ -47,9 +48,18 @@ def _check_independent(
     manipulator: Manipulator, leg_type: LegType, freedoms: list[int], *, planar: bool
 ) -> None:
     """Refuse a leg whose freedoms are dependent at home."""
-    screws = screws_at_home(manipulator, leg_type)
-    screws = (np.delete(screws, 2, axis=1) if planar else screws)[:, :, freedoms]
-    for index, columns in zip(leg_type.indices, screws, strict=True):
+    starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
+    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
+    for index in leg_type.indices:
+        leg = manipulator.legs[index]
+        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
+        columns = velocity_vectors(leg, q)[:, freedoms]
+        if planar:
+            columns = columns[:2]
+        else:
+            turning = _turning(leg_type, leg, q, pose.R)
+            columns = np.vstack([columns, turning[:, freedoms]])
+        sizes = np.linalg.norm(columns, axis=0)
         if not len(freedoms):
             raise SpecError(
                 manipulator.name,
@@ -57,7 +67,6 @@ def _check_independent(
                 "no joint left to solve for",
                 "at least one joint that is not extra",
             )
-        sizes = np.linalg.norm(columns, axis=0)
         values = np.linalg.svd(columns / np.where(sizes > 0, sizes, 1.0), compute_uv=False)
         if np.min(sizes) == 0.0 or values[-1] < _DEPENDENT:
             raise SpecError(
@@ -69,34 +78,8 @@ def _check_independent(
             )
 
 
-def screws_at_home(manipulator: Manipulator, leg_type: LegType) -> Array:
-    """What each joint rate of a leg does at the platform joint, (legs, 3 + moments, joints).
-
-    Rows: velocity of the connection point over the leg's reach, in the last link's axes, then
-    the parts of the joint's axis along the directions of the transmitted moments.
-    """
-    starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
-    found = []
-    for index in leg_type.indices:
-        leg = manipulator.legs[index]
-        q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        found.append(_screws(leg, q, _platform_in_leg(manipulator, leg), across(leg_type)))
-    return np.stack(found)
-
-
-def across(leg_type: LegType) -> int:
-    """The coordinate direction of the last link that is most across a revolute platform joint."""
-    axes = leg_type.over_legs(lambda leg: leg.platform_joint.axis_link or (0.0, 0.0, 0.0))
-    return int(np.argmin(np.abs(axes).max(axis=0)))
-
-
-def _platform_in_leg(manipulator: Manipulator, leg: Leg) -> Array:
-    """Rotation from platform axes to leg axes at home."""
-    pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
-    return np.array(leg.base_frame).T @ pose.R
-
-
-def _screws(leg: Leg, q: Array, leg_R_platform: Array, second: int) -> Array:
+def velocity_vectors(leg: Leg, q: Array) -> Array:
+    """Velocity of the connection point per joint rate, (3, joints), in leg axes."""
     origin, rotation = np.zeros(3), np.eye(3)
     axes, origins = [], []
     for joint, x in zip(leg.joints, q, strict=True):
@@ -110,39 +93,61 @@ def _screws(leg: Leg, q: Array, leg_R_platform: Array, second: int) -> Array:
         if joint.kind is not JointKind.PRISMATIC:
             rotation = rotation @ turn(axis, x)
     tip = origin + rotation @ np.array(leg.platform_joint.offset)
-    reach = max((float(np.linalg.norm(tip - o)) for o in origins), default=0.0) or 1.0
-    moments = _moment_directions(leg, rotation, leg_R_platform, second)
     columns = []
     for joint, e, o in zip(leg.joints, axes, origins, strict=True):
-        slides = joint.kind is JointKind.PRISMATIC
-        column = e if slides else np.cross(e, tip - o) / reach
+        column = e if joint.kind is JointKind.PRISMATIC else np.cross(e, tip - o)
         if joint.kind is JointKind.HELICAL:
-            column = column + joint.pitch * e / reach
-        along = [0.0 if slides else float(e @ n) for n in moments]
-        columns.append(np.array([*(rotation.T @ column), *along]))
+            column = column + joint.pitch * e
+        columns.append(column)
     return np.stack(columns, axis=1)
 
 
-def _moment_directions(
-    leg: Leg, rotation: Array, leg_R_platform: Array, second: int
-) -> list[Array]:
-    """Directions of the moments that a platform joint in space transmits, in leg axes."""
+def _turning(leg_type: LegType, leg: Leg, q: Array, base_R_platform: Array) -> Array:
+    """Angular velocity along the moment directions per joint rate, (moments, joints)."""
+    axes, last = axes_at(leg, q)
+    turns = [joint.kind is not JointKind.PRISMATIC for joint in leg.joints]
+    leg_R_platform = np.array(leg.base_frame).T @ base_R_platform
+    directions = moment_directions(leg_type, leg, last, leg_R_platform)
+    return np.asarray(directions @ (np.array(axes).T * turns))
+
+
+def moment_directions(leg_type: LegType, leg: Leg, last: Array, leg_R_platform: Array) -> Array:
+    """Directions (k, 3) of the moments that a leg's platform joint transmits, in leg axes.
+
+    Args:
+        leg_type: of the leg.
+        leg: one of its legs.
+        last: rotation from the last link's to leg axes.
+        leg_R_platform: rotation from platform to leg axes.
+    """
     end = leg.platform_joint
     if end.kind is PlatformJointKind.RIGID:
-        return [rotation[:, (k + 2) % 3] for k in range(3)]
-    if end.kind is PlatformJointKind.SPHERICAL or end.axis_link is None:
-        return []
-    axis = np.array(end.axis_link)
+        return np.asarray(np.roll(last.T, -2, axis=0))
+    if end.axis_link is None or end.axis_platform is None:
+        return np.zeros((0, 3))
+    platform = leg_R_platform @ np.array(end.axis_platform)
     if end.kind is PlatformJointKind.UNIVERSAL:
-        return [np.cross(rotation @ axis, leg_R_platform @ np.array(end.axis_platform))]
+        return np.cross(last @ np.array(end.axis_link), platform)[None]
+    axis = np.array(end.axis_link)
     if is_coordinate(end.axis_link):
         main = int(np.argmax(np.abs(axis)))
-        links = [np.eye(3)[(main + 1 + k) % 3] for k in (0, 1)]
+        link = np.roll(np.eye(3), -main - 1, axis=0)[:2]
     else:
-        first = np.cross(axis, np.eye(3)[second])
+        first = np.cross(axis, np.eye(3)[across(leg_type)])
         first = first / np.linalg.norm(first)
-        links = [first, np.cross(axis, first)]
-    return [rotation @ np.cross(link, axis) for link in links]
+        link = np.array([first, np.cross(axis, first)])
+    return np.asarray(np.cross(link @ last.T, platform))
+
+
+def axes_at(leg: Leg, q: Array) -> tuple[list[Array], Array]:
+    """Joint axes and the last link's rotation at displacements q, in leg axes."""
+    rotation, axes = np.eye(3), []
+    for joint, x in zip(leg.joints, q, strict=True):
+        axis = np.array(joint.axis)
+        axes.append(rotation @ axis)
+        if joint.kind is not JointKind.PRISMATIC:
+            rotation = rotation @ turn(axis, x)
+    return axes, rotation
 
 
 def turn(axis: Array, angle: float) -> Array:

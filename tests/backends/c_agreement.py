@@ -89,8 +89,8 @@ def assert_agree(
         failed = np.any([np.isnan(w).any(axis=1) for w in want], axis=0)
         np.testing.assert_array_equal(status != 0, failed, err_msg=name)
         assert not failed.all(), name
-        for one, (got, wanted) in enumerate(zip(batch, want, strict=True)):
-            got, wanted = compared(name, got, module), compared(name, wanted, module)
+        for one, pair in enumerate(zip(batch, want, strict=True)):
+            got, wanted = (compared(name, values, module) for values in pair)
             assert error(got, wanted) < limit, (name, one, error(got, wanted))
         for k in range(len(status)):
             found, code = library.single(name, *(v[k] for v in inputs.values()))

@@ -45,8 +45,8 @@ LEAST_SHARE = 0.85
 CONSISTENT_ONLY = re.compile(
     r"(Kc|Ks|Kr|Kd|rho2|disc|root|un|um|uu|from_centre)_\d+"  # steps of the inverse kinematics
     r"|(z|n|n0|l|aside|across|reference|c0|s0)_\d+|n0?_\d+_part"  # frames; they must be orthonormal
-    r"|n_c\d+|f_c\d+_part|f_c\d+_size|mu_c\d+(_\d+|_size)?|volume_c|phi_c\d+|gamma_c\d+|wn_\d+"
-    r"|u_c\d+|mu\d+_u_c\d+|end_l\d"  # wrenches and moments come as components in some basis
+    r"|n_c\d*|f_c_part|f_c_size|mu_c|(f|size|n|mu|m\d+|mu\d+)_c\d+|volume_c|o_c|phi_c\d+|gamma_c\d+"
+    r"|wn_\d+|end_l\d|t_c\d+"  # wrenches and moments come as components in some basis
     r"|n_m\d+|nd_m\d+|nu_\d+|m\d+_w_\d+"
     r"|Hk_a_\d+|M_ya_\d+"
 )

@@ -52,6 +52,7 @@ _S, _END_R = PlatformJointKind.SPHERICAL, PlatformJointKind.REVOLUTE
 _END_U, _RIGID = PlatformJointKind.UNIVERSAL, PlatformJointKind.RIGID
 _MOMENTS = {_S: 0, _END_U: 1, _END_R: 2, _RIGID: 3}
 _AXES = np.eye(3)
+_NOWHERE = (False, False, False)
 
 _SPACES = {
     Space.SPATIAL: 0.36,
@@ -61,12 +62,13 @@ _SPACES = {
     Space.SPHERICAL: 0.18,
 }
 _LEGS = {
-    Space.SPATIAL: (2, 7),
-    Space.PLANAR: (2, 5),
-    Space.POINT: (2, 4),
-    Space.TRANSLATIONAL: (2, 5),
-    Space.SPHERICAL: (2, 5),
+    Space.SPATIAL: (1, 8),
+    Space.PLANAR: (1, 6),
+    Space.POINT: (1, 4),
+    Space.TRANSLATIONAL: (1, 6),
+    Space.SPHERICAL: (1, 6),
 }
+_MOST_OF_LIGHT = 4
 
 
 class NothingDrawn(Exception):
@@ -97,13 +99,24 @@ class _JointPlan:
 
 @dataclass(frozen=True)
 class _LegPlan:
-    """Structure of a leg; axes of the platform joint: a direction's index, or None."""
+    """Structure of a leg.
+
+    Attributes:
+        joints: from the base.
+        end: platform joint.
+        present: which components of its offset there are.
+        link_axis, platform_axis: a direction's index, or None.
+        missing: freedoms that the leg lacks.
+        at_origin: it meets the platform at its origin.
+    """
 
     joints: tuple[_JointPlan, ...]
     end: PlatformJointKind
     present: tuple[bool, bool, bool]
     link_axis: int | None
     platform_axis: int | None
+    missing: int
+    at_origin: bool = False
 
 
 def draw(seed: int, *, light: bool = False) -> Manipulator:
@@ -114,17 +127,18 @@ def draw(seed: int, *, light: bool = False) -> Manipulator:
         light: few leg types and short chains only, for a quick run.
     """
     rng = np.random.default_rng(seed)
+    # Drawn once: spaces where fewer structures are regular are not to become rare.
+    space = Space(rng.choice(list(_SPACES), p=list(_SPACES.values())))
     while True:
         try:
-            return _Drawing(rng, light=light).run()
+            return _Drawing(rng, space, light=light).run()
         except NothingDrawn:
             continue
 
 
 class _Drawing:
-    def __init__(self, rng: np.random.Generator, *, light: bool) -> None:
-        self.rng, self.light = rng, light
-        self.space = Space(rng.choice(list(_SPACES), p=list(_SPACES.values())))
+    def __init__(self, rng: np.random.Generator, space: Space, *, light: bool) -> None:
+        self.rng, self.space, self.light = rng, space, light
         self.planar = is_planar(self.space)
         # How far from the textbook: aligned axes without offsets, or all general.
         self.wild = float(rng.choice([0.0, 0.35, 0.8]))
@@ -132,13 +146,15 @@ class _Drawing:
     def run(self) -> Manipulator:
         rng = self.rng
         least, most = _LEGS[self.space]
-        count = int(rng.integers(least, most + 1))
+        most = min(most, _MOST_OF_LIGHT) if self.light else most
+        # A single leg is a serial arm; fewer of them are drawn.
+        count = int(rng.integers(least + (rng.random() < 0.7), most + 1))
         types = min(
             count,
-            int(rng.choice([1, 2, 3], p=[0.75, 0.25, 0.0] if self.light else [0.4, 0.35, 0.25])),
+            1 + int(rng.choice(3, p=[0.85, 0.15, 0.0] if self.light else [0.6, 0.3, 0.1])),
         )
         plans = [self._leg_plan() for _ in range(types)]
-        owner = sorted([*range(types), *rng.integers(0, types, count - types)])
+        owner = self._owners(plans, count)
         for _ in range(4):
             try:
                 found = self._geometry([plans[k] for k in owner])
@@ -151,24 +167,51 @@ class _Drawing:
 
     # ---- structure -------------------------------------------------------------------
 
+    def _owners(self, plans: list[_LegPlan], count: int) -> list[int]:
+        """Plan of every leg; legs that would leave the platform no freedom are left out."""
+        types, owner = len(plans), []
+        freedoms = task_size(self.space)
+        for k in [*range(types), *self.rng.integers(0, types, count - types)]:
+            if plans[k].missing < freedoms:
+                freedoms -= plans[k].missing
+                owner.append(int(k))
+        if not owner:
+            raise NothingDrawn
+        return sorted(owner)
+
     def _leg_plan(self) -> _LegPlan:
         rng = self.rng
+        if self.space is Space.SPHERICAL and rng.random() < 0.15:
+            return self._wrist_plan()
         if self.planar:
             kinds, weights = [_END_R, _S], [0.8, 0.2]
         else:
             kinds, weights = [_S, _END_U, _END_R, _RIGID], [0.55, 0.2, 0.15, 0.1]
         end = kinds[int(rng.choice(len(kinds), p=weights))]
         needed = 2 if self.planar else 3 + _MOMENTS[end]
-        surplus = int(rng.choice([0, -1, -2, 1, 2], p=[0.6, 0.13, 0.04, 0.18, 0.05]))
-        if self.light and needed > 3:
-            surplus = min(surplus, 0)
-        length = max(1, needed + surplus)
+        if self.light:  # chains of three joints at most
+            missing = max(0, needed - 3, int(rng.choice(2, p=[0.8, 0.2])))
+            extras = int(rng.choice(2, p=[0.8, 0.2])) if missing == 0 else 0
+        else:
+            missing = int(rng.choice(4, p=[0.7, 0.16, 0.09, 0.05]))
+            extras = int(rng.choice(3, p=[0.76, 0.19, 0.05]))
+        length = max(1, needed - missing) + extras
         joints = self._joints(length)
-        extras = max(0, surplus)
         for index in rng.permutation(length)[:extras]:
             joints[index] = replace(joints[index], extra=True)
-        plan = _LegPlan(tuple(joints), end, self._present(), self._direction(), self._direction())
-        return plan
+        axes = self._direction(), self._direction()
+        missing = max(0, needed - length + extras)
+        return _LegPlan(tuple(joints), end, self._present(), *axes, missing)
+
+    def _wrist_plan(self) -> _LegPlan:
+        """Two or three revolute joints about the fixed centre, and one at the platform."""
+        extras = 0 if self.light else int(self.rng.choice(2, p=[0.7, 0.3]))
+        joints = [
+            _JointPlan(_R, self._direction(), _NOWHERE, self._link(), extra=k < extras)
+            for k in range(2 + extras)
+        ]
+        axes = self._direction(), self._direction()
+        return _LegPlan(tuple(joints), _END_R, _NOWHERE, *axes, 0, at_origin=True)
 
     def _joints(self, length: int) -> list[_JointPlan]:
         rng, joints = self.rng, []
@@ -185,11 +228,10 @@ class _Drawing:
         first = self._joint(before)
         if not macro:
             return [first]
-        none = (False, False, False)
         if macro == "C":
             kinds = [_R, _P] if self.rng.random() < 0.7 else [_P, _R]
             hollow = replace(first, kind=kinds[0], link="none")
-            return [hollow, replace(first, kind=kinds[1], present=none, tied="parallel")]
+            return [hollow, replace(first, kind=kinds[1], present=_NOWHERE, tied="parallel")]
         parts = [replace(first, kind=_R)]
         for _ in range({"U": 1, "S": 2}[macro]):
             parts[-1] = replace(parts[-1], link="none")
@@ -197,7 +239,9 @@ class _Drawing:
             if first.turned_in is not None:
                 across = ((parts[-1].turned_in or 0) + int(self.rng.integers(1, 3))) % 3
             parts.append(
-                _JointPlan(_R, across, none, self._link(), "" if across is not None else "across")
+                _JointPlan(
+                    _R, across, _NOWHERE, self._link(), "" if across is not None else "across"
+                )
             )
         return parts
 
@@ -293,7 +337,10 @@ class _Drawing:
         return poses[self.space]
 
     def _leg(self, plan: _LegPlan, empty: Manipulator, pose: Array) -> tuple[Leg, Array]:
-        for _ in range(25):
+        best = 0.0
+        for attempt in range(25):
+            if attempt > 3 and best < 1e-9:
+                raise OracleError("singular by structure")
             leg, q = self._any_leg(plan, empty, pose)
             free = [index for index, joint in enumerate(leg.joints) if not joint.extra]
             jacobian = leg_closure(empty, leg, pose, q).joints[:, free]
@@ -303,6 +350,7 @@ class _Drawing:
             if sizes.min() < LEG_QUALITY:
                 continue
             values = np.linalg.svd(jacobian, compute_uv=False)
+            best = max(best, values.min() / values.max())
             if values.min() > LEG_QUALITY * values.max():
                 return leg, q
         raise OracleError("no regular leg")
@@ -317,7 +365,8 @@ class _Drawing:
         if rng.random() < 0.2:
             tilt *= 0.0
         frame = rotation_from_quaternion(quaternion_of_vector(tilt))
-        seat = ZERO3 if self.space is Space.POINT else self._vector(0.4)
+        at_origin = plan.at_origin or self.space is Space.POINT
+        seat = ZERO3 if at_origin else self._vector(0.4)
         end = PlatformJoint(plan.end, offset=self._offset(plan.present))
         leg = Leg(ZERO3, matrix3(frame), joints, end, seat)
         rotation = platform_rotation(empty, pose)
@@ -409,7 +458,8 @@ class _Drawing:
         if freedoms < 1:
             return None
         wish = int(rng.choice([0, 1, 2, -1], p=[0.7, 0.12, 0.1, 0.08]))
-        by_leg = not self.light and rng.random() < 0.15  # marks of each leg, not of each type
+        # Marks of each leg, not of each type: every leg may become a type of its own.
+        by_leg = not self.light and len(found.legs) < 4 and rng.random() < 0.3
         for _ in range(60):
             marks = self._some_marks(found, owner, by_leg=by_leg)
             drives = sum(map(sum, marks))

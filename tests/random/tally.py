@@ -1,21 +1,105 @@
 """Draw, derive and compare many mechanisms, and print the tally.
 
-python -m tests.random.tally COUNT [FIRST_SEED] [--c]
+python -m tests.random.tally --count 600 --seed 0 --jobs 2
+
+One line per mechanism, then how many were drawn, derived and refused (by reason), what the
+derived ones were, and the worst error of every quantity.  Exit code 1 if any answer is wrong, any
+refusal has no mechanical reason, or anything but a refusal is raised.
 """
 
 from __future__ import annotations
 
+import argparse
+import multiprocessing
 import re
 import sys
 import time
 import traceback
 from collections import Counter
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
+from pne_sym.model.manipulator import Manipulator
 from tests.random.drawing import describe, draw
 from tests.random.judging import TOLERANCE, Verdict, judge
+
+MECHANICAL = (
+    r"\d+ freedoms where the platform joint leaves \d+ to be determined",
+    r"the leg is singular at home",
+    r"two solutions of the inverse kinematics meet at home",
+)
+"""Reasons for which a mechanism is outside the method."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of the mechanism of a seed.
+
+    Attributes:
+        seed: of the drawing.
+        title: structure in one line.
+        features: what occurs in it.
+        verdict: None if judging crashed.
+        problem: why it fails; empty if the answer, or the refusal, is right.
+        seconds: that judging took.
+    """
+
+    seed: int
+    title: str
+    features: frozenset[str]
+    verdict: Verdict | None
+    problem: str
+    seconds: float
+
+    @property
+    def derived(self) -> bool:
+        """Whether code was generated and compared."""
+        return self.verdict is not None and not self.verdict.refused
+
+    def __str__(self) -> str:
+        """For people."""
+        what = "refused: " + self.verdict.refused if self.verdict and self.verdict.refused else "ok"
+        problem = f"FAILED\n    {self.problem}"
+        return f"{self.seed} ({self.seconds:.1f} s) {self.title}: " + (
+            problem if self.problem else what
+        )
+
+
+def outcome(seed: int, *, light: bool = False, with_c: bool = True) -> Outcome:
+    """Draw and judge the mechanism of a seed."""
+    manipulator = draw(seed, light=light)
+    known = seed, describe(manipulator), features(manipulator)
+    start = time.perf_counter()
+    try:
+        verdict = judge(manipulator, np.random.default_rng(seed), with_c=with_c)
+    except Exception:  # a crash of any kind is what is looked for
+        problem = traceback.format_exc(limit=-3)
+        return Outcome(*known, None, problem, time.perf_counter() - start)
+    return Outcome(*known, verdict, _problem(verdict), time.perf_counter() - start)
+
+
+def _problem(verdict: Verdict) -> str:
+    if verdict.refused and not any(re.match(reason, verdict.refused) for reason in MECHANICAL):
+        return f"refused without a mechanical reason: {verdict.refused}"
+    return ", ".join(f"{name} {error:.1e}" for name, error in verdict.wrong.items())
+
+
+def features(manipulator: Manipulator) -> frozenset[str]:
+    """Space, kinds of joints and platform joints, and marks that occur."""
+    joints = [joint for leg in manipulator.legs for joint in leg.joints]
+    return frozenset(
+        {
+            f"space {manipulator.space}",
+            f"{len(manipulator.legs)} legs",
+            *(f"joint {joint.kind}" for joint in joints),
+            *(f"platform joint {leg.platform_joint.kind}" for leg in manipulator.legs),
+            *("driven extra" if joint.actuated else "passive extra" for joint in joints
+              if joint.extra),
+            *("massless link" for joint in joints if joint.link.is_massless),
+        }
+    )  # fmt: skip
 
 
 @dataclass
@@ -26,8 +110,9 @@ class Tally:
         drawn, derived, iterated, constrained, compiled, at_home: how many.
         other_branch: states at which iteration from home found another closure.
         refused: reason -> how many.
+        features: what occurs -> in how many of the derived.
         errors: worst error by quantity, and the seed that has it.
-        failures: seed and what is wrong.
+        failed: seeds.
     """
 
     drawn: int = 0
@@ -38,16 +123,23 @@ class Tally:
     at_home: int = 0
     other_branch: int = 0
     refused: Counter[str] = field(default_factory=Counter)
+    features: Counter[str] = field(default_factory=Counter)
     errors: dict[str, tuple[float, int]] = field(default_factory=dict)
-    failures: list[str] = field(default_factory=list)
+    failed: list[int] = field(default_factory=list)
 
-    def add(self, seed: int, verdict: Verdict) -> None:
-        """Count a verdict."""
+    def add(self, found: Outcome) -> None:
+        """Count an outcome."""
         self.drawn += 1
+        if found.problem:
+            self.failed.append(found.seed)
+        verdict = found.verdict
+        if verdict is None:
+            return
         if verdict.refused:
             self.refused[re.sub(r"\d+", "n", verdict.refused)] += 1
             return
         self.derived += 1
+        self.features.update(found.features)
         self.iterated += verdict.iterated
         self.constrained += verdict.constrained
         self.compiled += verdict.compiled
@@ -55,54 +147,43 @@ class Tally:
         self.other_branch += verdict.other_branch
         for name, error in verdict.errors.items():
             if error >= self.errors.get(name, (-1.0, 0))[0]:
-                self.errors[name] = (error, seed)
-
-    def fail(self, seed: int, title: str, problem: str) -> None:
-        """Count a failure."""
-        self.failures.append(f"seed {seed}: {title}\n    {problem}")
-        print(self.failures[-1], flush=True)
+                self.errors[name] = (error, found.seed)
 
     def __str__(self) -> str:
         """For people."""
         lines = [
             f"drawn {self.drawn}, derived {self.derived} ({self.constrained} constrained, "
             f"{self.iterated} by iteration, {self.compiled} also in C, {self.at_home} at home "
-            f"only), refused {sum(self.refused.values())}, failures {len(self.failures)}; "
+            f"only), refused {sum(self.refused.values())}, failed {len(self.failed)}; "
             f"{self.other_branch} states on another closure when iterated from home",
             *(f"  refused {n}: {reason}" for reason, n in self.refused.most_common()),
+            *(f"  {n} with {what}" for what, n in sorted(self.features.items())),
             *(f"  {name}: worst {e:.1e} (seed {s})" for name, (e, s) in self.errors.items()),
+            *(f"  failed: seed {seed}" for seed in sorted(self.failed)),
         ]
         return "\n".join(lines)
 
 
-def one(tally: Tally, seed: int, *, light: bool = False, with_c: bool = False) -> None:
-    """Draw and judge the mechanism of a seed."""
-    manipulator = draw(seed, light=light)
-    title = describe(manipulator)
-    try:
-        verdict = judge(manipulator, np.random.default_rng(seed), with_c=with_c)
-    except Exception:  # noqa: BLE001: a crash of any kind is what is looked for
-        tally.drawn += 1
-        tally.fail(seed, title, traceback.format_exc(limit=-3))
-        return
-    tally.add(seed, verdict)
-    if verdict.wrong:
-        wrong = ", ".join(f"{name} {error:.1e}" for name, error in verdict.wrong.items())
-        tally.fail(seed, title, wrong)
-
-
 def main(arguments: list[str]) -> int:
     """Run; 1 if anything failed."""
-    numbers = [int(a) for a in arguments if a.isdigit()]
-    count, first = (*numbers, 0, 0)[:2] if len(numbers) > 1 else ((*numbers, 600)[0], 0)
+    parser = argparse.ArgumentParser(description="Mechanisms drawn at random, and their tally.")
+    parser.add_argument("--count", type=int, default=600, help="how many")
+    parser.add_argument("--seed", type=int, default=0, help="the first; the others follow")
+    parser.add_argument("--jobs", type=int, default=1, help="processes")
+    parser.add_argument("--light", action="store_true", help="few leg types, short chains")
+    parser.add_argument("--no-c", action="store_true", help="NumPy only")
+    given = parser.parse_args(arguments)
     tally, start = Tally(), time.perf_counter()
-    for seed in range(first, first + count):
-        one(tally, seed, light="--light" in arguments, with_c="--c" in arguments)
-        if (seed - first + 1) % 50 == 0:
-            print(f"{seed - first + 1} of {count}, {time.perf_counter() - start:.0f} s", flush=True)
+    work = partial(outcome, light=given.light, with_c=not given.no_c)
+    seeds = range(given.seed, given.seed + given.count)
+    # Processes are renewed: what SymPy caches of one mechanism is of no use to the next.
+    with multiprocessing.get_context("spawn").Pool(given.jobs, maxtasksperchild=20) as pool:
+        for found in pool.imap_unordered(work, seeds):
+            tally.add(found)
+            print(f"[{tally.drawn} of {given.count}] {found}", flush=True)
     print(tally)
     print(f"{time.perf_counter() - start:.0f} s; right is below {TOLERANCE:g}")
-    return 1 if tally.failures else 0
+    return 1 if tally.failed else 0
 
 
 if __name__ == "__main__":

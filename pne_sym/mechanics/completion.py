@@ -1,0 +1,405 @@
+"""Directions that complete a leg's freedoms to a full basis, and the wrenches reciprocal to them.
+
+A leg with fewer freedoms than its platform joint leaves to be determined restricts the platform.
+Auxiliary directions, fixed in the last link, complete its freedoms to a basis; the reciprocal
+wrench of an auxiliary direction does no work along any freedom.  Which directions serve is
+settled at home, where the basis must be well conditioned for every leg of the type.
+
+Some of these wrenches may do no work along any motion of the platform: a moment where the
+platform cannot turn, a force through the fixed centre.  They constrain nothing.
+
+Reference: section 3.7, Eqs. 35 to 37.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from itertools import combinations, product
+from typing import Any
+
+import numpy as np
+import sympy as sp
+from numpy.typing import NDArray
+
+from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.scope import axes_at, moment_directions, velocity_vectors
+from pne_sym.model.closure import TWIST, Pose, displaced, least_norm, leg_gap, pose_at
+from pne_sym.model.loops import COORDINATES
+from pne_sym.model.manipulator import JointKind, Manipulator, Space
+from pne_sym.vector import (
+    Cross,
+    Dot,
+    DualScalar,
+    DualVector,
+    Vector,
+    VectorSymbol,
+    ZeroVector,
+    norm,
+    vector_sum,
+)
+
+Array = NDArray[np.float64]
+_PURE = 1e-6  # relative size of what counts as zero
+_BETTER = 1.01  # a choice replaces an earlier one only if it is better by this factor
+_SAMPLES, _REACH, _NEWTON = 4, 0.3, 12  # other poses of a leg: how many, how far, how exact
+
+
+class Kind(StrEnum):
+    """Kinds of auxiliary directions: twists that need not be freedoms of the leg."""
+
+    SLIDE = "slide"
+    """Along a coordinate direction of the last link."""
+    RIGHT_ANGLE = "right angle"
+    """That opens one of the right angles of the platform joint, by number."""
+    TURN = "turn"
+    """About the fixed centre, about a coordinate direction of the last link."""
+
+
+@dataclass(frozen=True)
+class Auxiliary:
+    """A direction that completes the freedoms of a leg type.
+
+    Attributes:
+        kind, number: which direction.
+        of_force: its reciprocal wrench has a force part at home.
+        acts: that wrench does work along some motion of the platform.
+    """
+
+    kind: Kind
+    number: int
+    of_force: bool = True
+    acts: bool = True
+
+
+@dataclass(frozen=True)
+class _State:
+    """A leg and its platform in numbers.
+
+    Attributes:
+        freedoms: (3 + k, m) unit columns: velocity of the connection point in the last link's
+            axes, angular velocity along the k moment directions.
+        effect: (nt, 3 + k) of wrenches at the connection point on the platform's freedoms.
+        turns: (3 + k, 3) turns of the last link about the platform origin.
+    """
+
+    freedoms: Array
+    effect: Array
+    turns: Array
+
+    @property
+    def left_out(self) -> Array:
+        """Orthonormal wrenches (3 + k, c) that do no work along the freedoms."""
+        u, values, _ = np.linalg.svd(self.freedoms)
+        return np.asarray(u[:, int(np.sum(values > _PURE)) :])
+
+
+def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxiliary, ...]:
+    """The choice for which the worst conditioned leg of a type is conditioned best.
+
+    Wrenches that act come first.  A wrench that does no work along any motion of the platform,
+    such as a moment on a platform that cannot turn, is none of the constraints.
+    """
+    home = [next(_states(manipulator, g, row)) for row in range(g.leg_type.count)]
+    missing = home[0].left_out.shape[1]
+    transmitted = len(g.pairs)
+    slides = [Auxiliary(Kind.SLIDE, k) for k in range(3)]
+    angles = [Auxiliary(Kind.RIGHT_ANGLE, k) for k in range(transmitted)]
+    idle = _idle(manipulator, g)
+    choices: Iterable[tuple[tuple[Auxiliary, ...], tuple[Auxiliary, ...]]]
+    if idle and manipulator.space is Space.SPHERICAL:
+        turns = [Auxiliary(Kind.TURN, k) for k in range(3)]
+        choices = product(
+            combinations(turns, missing - idle), combinations([*slides, *angles], idle)
+        )
+    else:
+        pure = max(_rank(s.left_out) - _rank(s.left_out[:3]) for s in home)
+        choices = product(combinations(slides, missing - pure), combinations(angles, pure))
+    best = 0.0
+    chosen: tuple[Auxiliary, ...] = ()
+    for first, second in choices:
+        quality = min(_quality(s, (*first, *second)) for s in home)
+        if quality > _BETTER * best:
+            best, chosen = quality, (*first, *second)
+    return tuple(
+        replace(a, of_force=_has_force(home, chosen, k), acts=k < missing - idle)
+        for k, a in enumerate(chosen)
+    )
+
+
+def _idle(manipulator: Manipulator, g: LegGeometry) -> int:
+    """How many wrenches of the legs never do work along a motion of the platform."""
+    if manipulator.space is Space.SPATIAL:
+        return 0
+    counts: list[int] = []
+    for row in range(g.leg_type.count):
+        for state in _states(manipulator, g, row):
+            wrenches = state.left_out
+            counts.append(wrenches.shape[1] - _rank(state.effect @ wrenches))
+    return min(counts)
+
+
+def _columns(state: _State, chosen: Sequence[Auxiliary]) -> Array:
+    """Freedoms and auxiliary directions (3 + k, 3 + k)."""
+    units = np.eye(len(state.freedoms))
+    own = {
+        Kind.SLIDE: units,
+        Kind.RIGHT_ANGLE: units[:, 3:],
+        Kind.TURN: state.turns,
+    }
+    columns = [own[a.kind][:, a.number] for a in chosen]
+    return np.column_stack([*columns, state.freedoms])
+
+
+def _quality(state: _State, chosen: Sequence[Auxiliary]) -> float:
+    return float(np.linalg.svd(_columns(state, chosen))[1][-1])
+
+
+def _has_force(states: list[_State], chosen: Sequence[Auxiliary], k: int) -> bool:
+    """Whether the wrench of an auxiliary direction has a force part for every leg."""
+    forces = []
+    for state in states:
+        dual = np.linalg.inv(_columns(state, chosen))[k]
+        forces.append(float(np.linalg.norm(dual[:3]) / np.linalg.norm(dual)))
+    return min(forces) > _PURE
+
+
+def _states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_State]:
+    """A leg at home, then at other poses that it reaches, whatever the other legs do."""
+    index = g.leg_type.indices[row]
+    leg, space = manipulator.legs[index], manipulator.space
+    start = sum(len(other.joints) for other in manipulator.legs[:index])
+    q = np.array(manipulator.home.q[start : start + len(leg.joints)])
+    X = np.array(manipulator.home.X[: len(COORDINATES[space])])
+    rng, twist = np.random.default_rng(0), list(TWIST[space])
+    for _ in range(_SAMPLES):
+        pose = pose_at(space, list(X), manipulator.fixed_centre)
+        yield _state(manipulator, g, row, q, pose)
+        for newton in range(_NEWTON):
+            pose = pose_at(space, list(X), manipulator.fixed_centre)
+            gap, by_q, by_twist = leg_gap(leg, q, pose)
+            system = np.hstack([by_twist[:, twist], by_q])
+            if newton:
+                step = -least_norm(system, gap)
+            else:
+                move = rng.uniform(-_REACH, _REACH, system.shape[1])
+                step = move - least_norm(system, system @ move)
+            X, q = displaced(space, X, step[: len(twist)]), q + step[len(twist) :]
+
+
+def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: Pose) -> _State:
+    leg = g.leg_type.legs[row]
+    free = [j for j, joint in enumerate(leg.joints) if not joint.extra]
+    axes, last = axes_at(leg, q)
+    turns = [joint.kind is not JointKind.PRISMATIC for joint in leg.joints]
+    leg_R_platform = np.array(leg.base_frame).T @ pose.R
+    tip = last @ g.canonical[g.group[g.count]][row]
+    arm = leg_R_platform @ np.array(leg.platform_point)
+    n = moment_directions(g.leg_type, leg, last, leg_R_platform)
+    columns = np.vstack([tip.T @ velocity_vectors(leg, q), n @ (np.array(axes).T * turns)])[:, free]
+    about_origin = np.vstack([tip.T @ np.cross(tip.T, arm).T, n @ tip])
+    effect = {
+        Space.TRANSLATIONAL: np.eye(3, len(columns)),
+        Space.SPHERICAL: about_origin.T,
+        Space.SPATIAL: np.vstack([np.eye(3, len(columns)), about_origin.T]),
+    }
+    return _State(
+        columns / np.linalg.norm(columns, axis=0), effect[manipulator.space], about_origin
+    )
+
+
+def _rank(rows: Array) -> int:
+    return int(np.sum(np.linalg.svd(rows)[1] > _PURE)) if rows.size else 0
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """A wrench that does no work along a leg's freedoms: lambda is its amount.
+
+    Attributes:
+        force: of the leg on the platform at the connection point, per unit lambda.
+        amounts: along the moment directions, per unit lambda.
+        moment: the moment that they make.
+        acts: it does work along some motion of the platform.
+    """
+
+    force: Vector
+    amounts: tuple[Any, ...] = ()
+    moment: Vector = ZeroVector
+    acts: bool = True
+
+
+@dataclass(frozen=True)
+class Freedoms:
+    """Freedoms of a leg as columns that are to be completed.
+
+    Attributes:
+        vectors: velocity of the connection point, per joint that is not extra.
+        rows: per moment direction, the part of each joint's axis along it.
+        scales: sizes of the velocity vectors.
+        directions: of the moments that the platform joint transmits.
+        frame: of the last link.
+    """
+
+    vectors: list[Any]
+    rows: list[list[Any]]
+    scales: list[Any]
+    directions: list[Any]
+    frame: str
+
+
+def completed_wrenches(
+    book: Book, g: LegGeometry, chosen: Sequence[Auxiliary], freedoms: Freedoms
+) -> list[LeftOut]:
+    """The wrenches reciprocal to a leg's freedoms: of unit force, or pure unit moments."""
+    columns = [_column(book, g, auxiliary, freedoms) for auxiliary in chosen]
+    vectors = [*(vector for vector, _ in columns), *freedoms.vectors]
+    rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(freedoms.rows)]
+    screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
+    found, duals, amounts = [], [], []
+    for k, auxiliary in enumerate(chosen):
+        force, moments = _dual(book, g, k, screws, len(rows), freedoms.frame)
+        duals.append(force)
+        amounts.append(moments)
+        found.append(_unit_wrench(book, g, freedoms, k + 1, force, moments, auxiliary))
+    frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
+    book.bases.append(
+        ReciprocalBasis(
+            g.leg_type.name,
+            tuple(vectors),
+            tuple(duals),
+            (*(sp.S.One for _ in chosen), *freedoms.scales),
+            tuple(frames),
+            tuple(tuple(row) for row in rows),
+            tuple(amounts),
+            g.size,
+        )
+    )
+    return found
+
+
+def _column(
+    book: Book, g: LegGeometry, auxiliary: Auxiliary, freedoms: Freedoms
+) -> tuple[Any, list[Any]]:
+    """Velocity of the connection point, and angular velocity along the moment directions."""
+    number = auxiliary.number
+    if auxiliary.kind is Kind.RIGHT_ANGLE:
+        return ZeroVector, [sp.Integer(int(i == number)) for i in range(len(freedoms.rows))]
+    a = direction(book, g, number, freedoms.frame)
+    if auxiliary.kind is Kind.SLIDE:
+        return a, [sp.S.Zero for _ in freedoms.rows]
+    velocity = book.define(
+        g.name(f"t_c{number + 1}"),
+        Cross(a, g.platform_point),
+        rf"\mathbf t_{{c{number + 1}}}",
+        "velocity of the connection point as it turns about the fixed centre",
+        Law.GEOMETRY,
+        unit="m",
+        body=freedoms.frame,
+    )
+    return velocity, [Dot(a, n) for n in freedoms.directions]
+
+
+def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:
+    """A coordinate direction of the last link."""
+    symbol = VectorSymbol(g.name(f"a_c{axis + 1}"))
+    if symbol.name not in book.notation:
+        meaning = "coordinate direction of the last link, to complete the leg's freedoms"
+        latex = rf"\mathbf a_{{c{axis + 1}}}"
+        quantity = Quantity(symbol.name, latex, meaning, "-", frame, parameter=True)
+        book.give(symbol, frame, tuple(sp.Integer(int(i == axis)) for i in range(3)), quantity)
+    return symbol
+
+
+def _dual(
+    book: Book, g: LegGeometry, k: int, screws: tuple[Any, Any], transmitted: int, frame: str
+) -> tuple[Any, tuple[Any, ...]]:
+    """The reciprocal wrench of auxiliary direction k: force, moment amounts."""
+    force = book.define(
+        g.name(f"f_c{k + 1}"),
+        DualVector(sp.Integer(k), *screws),
+        rf"\mathbf f_{{c{k + 1}}}",
+        f"force part of the wrench that does no work along the leg's freedoms, {k + 1}",
+        Law.RECIPROCITY,
+        body=frame,
+        reference="Eq. 35",
+    )
+    amounts = tuple(
+        book.define(
+            g.name(f"m{i + 1}_c{k + 1}"),
+            DualScalar(sp.Integer(k), sp.Integer(i), *screws),
+            f"m_{{c{k + 1}{i + 1}}}",
+            f"moment part {i + 1} of the wrench that does no work along the leg's freedoms, "
+            f"{k + 1}",
+            Law.RECIPROCITY,
+            reference="Eq. 35",
+        )
+        for i in range(transmitted)
+    )
+    return force, amounts
+
+
+def _unit_wrench(
+    book: Book,
+    g: LegGeometry,
+    freedoms: Freedoms,
+    number: int,
+    force: Any,
+    amounts: tuple[Any, ...],
+    auxiliary: Auxiliary,
+) -> LeftOut:
+    """The wrench for a force, or a moment, of size one."""
+    directions, frame, of_force = freedoms.directions, freedoms.frame, auxiliary.of_force
+    size = book.define(
+        g.name(f"size_c{number}"),
+        norm(force) if of_force else _size(amounts),
+        rf"\ell_{{c{number}}}",
+        f"size of the {'force' if of_force else 'moment'}",
+        Law.GEOMETRY,
+    )
+    unit = book.define(
+        g.name(f"n_c{number}"),
+        force / size,
+        rf"\mathbf n_{{c{number}}}",
+        "unit force that the leg's freedoms leave out"
+        if of_force
+        else "force part, zero where the loops close, of the unit moment that the leg's freedoms "
+        "leave out",
+        Law.GEOMETRY,
+        body=frame,
+        reference="Eq. 35",
+    )
+    moments = tuple(
+        book.define(
+            g.name(f"mu{i}_c{number}"),
+            amount / size,
+            rf"\mu_{{c{number}{i}}}",
+            f"moment along direction {i} that goes with it",
+            Law.GEOMETRY,
+            reference="Eq. 35",
+        )
+        for i, amount in enumerate(amounts, 1)
+    )
+    if not moments:
+        return LeftOut(unit, acts=auxiliary.acts)
+    moment = book.define(
+        g.name(f"mu_c{number}"),
+        _moment(moments, directions),
+        rf"\boldsymbol\mu_{{c{number}}}",
+        "the moment that goes with it",
+        Law.GEOMETRY,
+        body=frame,
+        reference="Eq. 35",
+    )
+    return LeftOut(unit, moments, moment, auxiliary.acts)
+
+
+def _size(amounts: tuple[Any, ...]) -> Any:
+    """Size of a moment by its amounts along orthonormal directions; a single one keeps its sign."""
+    return amounts[0] if len(amounts) == 1 else sp.sqrt(sp.Add(*(a**2 for a in amounts)))
+
+
+def _moment(amounts: tuple[Any, ...], directions: list[Any]) -> Vector:
+    return vector_sum(m * n for m, n in zip(amounts, directions, strict=True))

@@ -1,0 +1,192 @@
+"""Mechanisms that the campaign found wrong, refused or crashing, in their smallest form.
+
+And some that are built: wrists, tripteron and the like, whose legs leave out wrenches that do no
+work on their platforms.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from pne_sym.mechanics.derive import derive
+from pne_sym.mechanics.mobility import mobility
+from pne_sym.model.errors import SpecError
+from pne_sym.model.manipulator import (
+    ZERO3,
+    Body,
+    Home,
+    Joint,
+    JointKind,
+    Leg,
+    Manipulator,
+    PlatformJoint,
+    PlatformJointKind,
+    Space,
+    Vector3,
+)
+from tests.oracle.chain import chain_poses
+from tests.oracle.coordinates import (
+    platform_position,
+    platform_rotation,
+    quaternion_of_vector,
+    rotation_from_quaternion,
+)
+from tests.oracle.jets import Array, constant
+from tests.oracle.mechanisms import mechanism
+from tests.oracle.randomisation import matrix3, random_inertia, vector3
+from tests.random.judging import judge
+
+FOUND: dict[str, tuple[str, list[str]]] = {
+    "the size of a vector with one component": ("spatial", ["Ry*0 Rz | S"] * 3),
+    "one slide": ("spatial", ["Px* | S", *["Rz* Ry Px* | S"] * 3]),
+    "one helix": ("spatial", ["Hz* | S", *["Rz* Ry Px* | S"] * 3]),
+    "no axis across a helix": ("spatial", ["Hz* Px | S", "Rz* Ry Px* | S", "Rz* Ry Px* | S"]),
+    "extra joint of a constrained leg": ("point", ["Px*+ Py* | R"]),
+    "passive extra joint of a constrained leg": ("planar", ["Rz+ Rz* | R", "Rz* Px | R"]),
+    "extra joint of a leg with moments": ("spatial", ["Rz* Rt*+ Pt* Rt | U", "Rz* Ry Px* | S"]),
+    "angle that parameters fix": ("translational", ["Pz* Rx | U"]),
+    "moment on a platform that cannot turn": ("translational", ["Px* Py* | U"]),
+    "two freedoms and a universal joint": ("spatial", ["Px0 Rx* | U"] * 2),
+    "three freedoms and a revolute joint": ("spatial", ["Rz* Ry* Rx | R", "Rz* Ry Px* | S"]),
+    "three freedoms and a rigid joint": ("spatial", ["Rz* Rx* Pt* | rigid"]),
+    "five freedoms and a rigid joint": ("spatial", ["Rz* Ry* Px* Rx Rz* | rigid", "Rz Ry Px* | S"]),
+}
+
+
+@pytest.mark.parametrize("name", FOUND)
+def test_right(name: str) -> None:
+    space, legs = FOUND[name]
+    check(mechanism(space, legs, np.random.default_rng(5)))
+
+
+def check(manipulator: Manipulator) -> None:
+    verdict = judge(replace(manipulator, name="found"), np.random.default_rng(5), with_c=True)
+    assert not verdict.refused, verdict.refused
+    assert not verdict.wrong, verdict.wrong
+
+
+# ---- mechanisms that are built ---------------------------------------------------------------
+
+X, Y, Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+TILTED = (0.6, 0.0, 0.8)
+FLAT = (0.6, 0.8, 0.0)
+R, P = JointKind.REVOLUTE, JointKind.PRISMATIC
+
+
+def joint(
+    kind: JointKind, axis: Vector3, offset: Vector3 = ZERO3, *, driven: bool = False
+) -> Joint:
+    rng = np.random.default_rng(len(kind.value + str(axis)))
+    body = Body(float(rng.uniform(0.5, 2.0)), vector3(rng.uniform(-0.2, 0.2, 3)),
+                random_inertia(rng, 0.03))  # fmt: skip
+    return Joint(kind, axis, offset, actuated=driven, link=body)
+
+
+def arm(
+    joints: list[Joint], end: PlatformJointKind, axis: Vector3 | None, frame: Array, seat: Vector3
+) -> Leg:
+    """A leg whose base point and platform axes are still open."""
+    return Leg(ZERO3, matrix3(frame), tuple(joints), PlatformJoint(end, axis_link=axis), seat)
+
+
+def built(
+    space: Space, arms: list[Leg], q: list[list[float]], pose: Array, centre: Vector3 | None = None
+) -> Manipulator:
+    """The mechanism, closed at a pose with these displacements."""
+    rng = np.random.default_rng(0)
+    platform = Body(3.0, vector3(rng.uniform(-0.1, 0.1, 3)), random_inertia(rng, 0.05))
+    home = Home(tuple(map(float, pose)), tuple(float(x) for own in q for x in own))
+    empty = Manipulator("built", "built", space, (1.0, 2.0, -9.0), platform, (), home, centre)
+    place, turn = platform_position(empty, pose), platform_rotation(empty, pose)
+    legs = []
+    for leg, own in zip(arms, q, strict=True):
+        last = chain_poses(leg, constant(np.array(own)))[-1]
+        end, to_platform = leg.platform_joint, turn.T @ last.rotation.value
+        if end.kind is PlatformJointKind.RIGID:
+            end = replace(end, rotation=matrix3(to_platform.T))
+        elif end.axis_link is not None:
+            end = replace(end, axis_platform=vector3(to_platform @ np.array(end.axis_link)))
+        base = place + turn @ np.array(leg.platform_point) - last.origin.value
+        legs.append(replace(leg, base_point=vector3(base), platform_joint=end))
+    return replace(empty, legs=tuple(legs))
+
+
+def turned(*vector: float) -> Array:
+    return rotation_from_quaternion(quaternion_of_vector(np.array(vector)))
+
+
+def around(k: int, *tilt: float) -> Array:
+    return np.asarray(turned(0.0, 0.0, 2.0 * np.pi * k / 3.0) @ turned(*(tilt or (0.0, 0.0, 0.0))))
+
+
+ALONG = [np.eye(3), np.eye(3)[:, [1, 2, 0]], np.eye(3)[:, [2, 0, 1]]]
+REVOLUTE, RIGID = PlatformJointKind.REVOLUTE, PlatformJointKind.RIGID
+
+
+def wrist(second: Vector3, last: Vector3, centre: Vector3) -> Manipulator:
+    """3-RRR, all axes through one centre."""
+    chain = [joint(R, Z, driven=True), joint(R, second)]
+    arms = [arm(chain, REVOLUTE, last, around(k, 0.7, 0.2, 0.1), ZERO3) for k in range(3)]
+    q = [[0.3 + 0.1 * k, 0.9] for k in range(3)]
+    pose = quaternion_of_vector(np.array([0.1, 0.2, -0.1]))
+    return built(Space.SPHERICAL, arms, q, pose, centre)
+
+
+def tripteron() -> Manipulator:
+    """3-PRRR with parallel axes in every leg: moments on a platform that cannot turn."""
+    chain = [joint(P, Z, driven=True), joint(R, Z), joint(R, Z, (0.4, 0.0, 0.0)),
+             joint(R, Z, (0.35, 0.0, 0.0))]  # fmt: skip
+    arms = [arm(chain, RIGID, None, ALONG[k], (0.05 * k, 0.1, -0.05)) for k in range(3)]
+    q = [[0.5, 0.4 + 0.1 * k, 0.9, -1.3 - 0.1 * k] for k in range(3)]
+    return built(Space.TRANSLATIONAL, arms, q, np.array([0.1, 0.2, 0.3]))
+
+
+def three_upu() -> Manipulator:
+    """3-UPU in pure translation."""
+    chain = [joint(R, X), joint(R, Y), joint(P, Z, driven=True), joint(R, Y)]
+    seats = [vector3(0.2 * around(k)[:, 0]) for k in range(3)]
+    arms = [arm(chain, REVOLUTE, X, around(k), seats[k]) for k in range(3)]
+    return built(Space.TRANSLATIONAL, arms, [[0.2, 0.3, 0.8, -0.3]] * 3, np.array([0.05, 0.0, 0.9]))
+
+
+def planar_leg_in_space() -> Manipulator:
+    """A leg that keeps the platform in a plane: one force and two moments; and a free leg."""
+    keeps = arm([joint(R, Z, driven=True), joint(P, X, driven=True)], REVOLUTE, Z,
+                turned(0.1, 0.2, 0.3), (0.2, 0.1, 0.0))  # fmt: skip
+    chain = [joint(R, Z), joint(R, Y), joint(P, X, driven=True)]
+    free = arm(chain, PlatformJointKind.SPHERICAL, None, turned(0.3, 0.2, 0.1), (0.1, 0.1, 0.2))
+    pose = np.array([0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0])
+    return built(Space.SPATIAL, [keeps, free], [[0.3, 0.6], [0.3, 0.2, 0.6]], pose)
+
+
+BUILT = {
+    "wrist": wrist(X, Z, (0.1, 0.2, -0.1)),
+    "wrist at the origin": wrist(X, Z, ZERO3),
+    "wrist with tilted axes": wrist(TILTED, FLAT, (0.1, 0.2, -0.1)),
+    "tripteron": tripteron(),
+    "3-UPU": three_upu(),
+    "planar leg in space": planar_leg_in_space(),
+}
+CONSTRAINTS = {"planar leg in space": 3}
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_built(name: str) -> None:
+    check(BUILT[name])
+
+
+@pytest.mark.parametrize("name", BUILT)
+def test_only_wrenches_that_act_are_constraints(name: str) -> None:
+    found = derive(BUILT[name]).coordinates.sizes["NC"]
+    assert found == CONSTRAINTS.get(name, 0) == mobility(BUILT[name]).constraints
+
+
+def test_a_singular_leg_that_transmits_moments_is_refused() -> None:
+    chain = [joint(P, Z, driven=True), joint(R, Z), joint(R, Z, (0.4, 0.0, 0.0))]
+    arms = [arm(chain, REVOLUTE, Z, ALONG[k], (0.05 * k, 0.1, -0.05)) for k in range(3)]
+    doubled = built(Space.TRANSLATIONAL, arms, [[0.5, 0.4, 0.9]] * 3, np.array([0.1, 0.2, 0.3]))
+    with pytest.raises(SpecError, match="the leg is singular at home"):
+        derive(doubled)
