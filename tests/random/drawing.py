@@ -141,7 +141,7 @@ class _Drawing:
         self.rng, self.space, self.light = rng, space, light
         self.planar = is_planar(self.space)
         # How far from the textbook: aligned axes without offsets, or all general.
-        self.wild = float(rng.choice([0.0, 0.35, 0.8]))
+        self.wild = float(rng.choice([0.0, 0.35, 0.8])) * (0.2 if light else 1.0)
 
     def run(self) -> Manipulator:
         rng = self.rng
@@ -151,7 +151,7 @@ class _Drawing:
         count = int(rng.integers(least + (rng.random() < 0.7), most + 1))
         types = min(
             count,
-            1 + int(rng.choice(3, p=[0.85, 0.15, 0.0] if self.light else [0.6, 0.3, 0.1])),
+            1 + int(rng.choice(3, p=[0.95, 0.05, 0.0] if self.light else [0.6, 0.3, 0.1])),
         )
         plans = [self._leg_plan() for _ in range(types)]
         owner = self._owners(plans, count)
@@ -186,12 +186,13 @@ class _Drawing:
         if self.planar:
             kinds, weights = [_END_R, _S], [0.8, 0.2]
         else:
-            kinds, weights = [_S, _END_U, _END_R, _RIGID], [0.55, 0.2, 0.15, 0.1]
+            kinds = [_S, _END_U, _END_R, _RIGID]
+            weights = [0.67, 0.13, 0.1, 0.1] if self.light else [0.55, 0.2, 0.15, 0.1]
         end = kinds[int(rng.choice(len(kinds), p=weights))]
         needed = 2 if self.planar else 3 + _MOMENTS[end]
         if self.light:  # chains of three joints at most
-            missing = max(0, needed - 3, int(rng.choice(2, p=[0.8, 0.2])))
-            extras = int(rng.choice(2, p=[0.8, 0.2])) if missing == 0 else 0
+            missing = max(needed - int(rng.integers(2, 4)), int(rng.choice(2, p=[0.8, 0.2])))
+            extras = int(rng.choice(2, p=[0.6, 0.4])) if missing == 0 else 0
         else:
             missing = int(rng.choice(4, p=[0.7, 0.16, 0.09, 0.05]))
             extras = int(rng.choice(3, p=[0.76, 0.19, 0.05]))
@@ -271,7 +272,8 @@ class _Drawing:
     def _present(self) -> tuple[bool, bool, bool]:
         """Which components an offset has."""
         rng = self.rng
-        way = str(rng.choice(["none", "one", "some", "all"], p=[0.4, 0.3, 0.15, 0.15]))
+        likely = [0.5, 0.45, 0.05, 0.0] if self.light else [0.4, 0.3, 0.15, 0.15]
+        way = str(rng.choice(["none", "one", "some", "all"], p=likely))
         flags = {
             "none": np.zeros(3),
             "one": np.eye(3)[rng.integers(2 if self.planar else 3)],

@@ -311,7 +311,7 @@ _C_FUNCTIONS: dict[str, Callable[[Any, State, Array], Any]] = {
 def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State]) -> None:
     """The generated C against the generated NumPy."""
     with tempfile.TemporaryDirectory() as folder:
-        library = CLibrary(bundle, Path(folder), flags=("-O1",))
+        library = CLibrary(bundle, Path(folder), flags=("-O0",))
         for state in states:
             tau = np.random.default_rng(1).uniform(-20.0, 20.0, module.NU)
             arguments = {**state._asdict(), "tau": tau, "q0": state.q}
