@@ -24,6 +24,7 @@ def test_catalogue(name: str, tmp_path: Path) -> None:
     )
     assert library.status == OK
     assert library.prepare(library.parameters(p)) == OK
-    states = [models.state_at(other, seed) for seed in range(STATES)]
-    given = vectors(module, states, np.random.default_rng(0))
+    states = [models.state_at(other, seed) for seed in range(2)]
+    X, q = np.array([s.X for s in states]), np.array([s.q for s in states])
+    given = vectors(module, X, q, STATES, np.random.default_rng(0))
     assert assert_agree(library, module, given, p) >= 12

@@ -1,0 +1,124 @@
+"""Displacements found by iteration: C agrees with NumPy, and tells what went wrong.
+
+The mechanisms are drawn at random; the seeds are chosen for their structure.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from pne_sym.backends.describe import describe
+from pne_sym.model.manipulator import Manipulator
+from tests import models
+from tests.backends.c_agreement import assert_agree, vectors
+from tests.backends.c_library import INVALID, NOT_CONVERGED, OK, Array, CLibrary
+from tests.random.drawing import draw
+
+STATES = 11  # a lane of 8 states, and a remainder
+QUICK = ("-O0",)
+STRUCTURES = {
+    # seed: legs; (rows, unknowns) of the closure, closed legs too?, constraints, redundant, extras
+    224: ("planar, 3 RRR", (2, 2), False, 0, False, 3),
+    80: ("point, 4 RRR, redundant drives", (2, 2), False, 0, True, 4),
+    13: ("spherical, 2 CRP, redundant drives", (3, 3), False, 0, True, 2),
+    56: ("translational, PPRH-U and RR", (4, 4), True, 1, True, 0),
+    109: ("spherical, RRPR-U and RHR-U: fewer unknowns than conditions", (4, 3), True, 1, False, 0),
+}
+
+
+def near_home(manipulator: Manipulator, count: int) -> dict[str, Array]:
+    home = manipulator.home
+    return vectors(
+        models.module(manipulator), np.array(home.X), np.array(home.q), count,
+        np.random.default_rng(1),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("seed", STRUCTURES)
+def test_agreement(seed: int, tmp_path: Path) -> None:
+    manipulator = draw(seed, light=True)
+    bundle = models.bundle(manipulator)
+    _, shape, mixed, constraints, redundant, extras = STRUCTURES[seed]
+    d, types = describe(bundle), bundle.derivation.leg_types
+    iterated = next(t for t in types if not t.is_closed)
+    assert (bundle.program.shapes[f"gap_{iterated.name}"][1], iterated.unknowns) == shape
+    assert any(t.is_closed for t in types) == mixed
+    found = (d.sizes["NC"], d.is_redundant, len(d.coordinates.extras))
+    assert found == (constraints, redundant, extras)
+    library = CLibrary(bundle, tmp_path, flags=QUICK)
+    given = near_home(manipulator, STATES)
+    assert assert_agree(library, models.module(manipulator), given) >= 12
+
+
+@pytest.fixture(scope="module")
+def planar() -> Manipulator:
+    return draw(224, light=True)
+
+
+@pytest.fixture(scope="module")
+def library(planar: Manipulator, tmp_path_factory: pytest.TempPathFactory) -> CLibrary:
+    return CLibrary(models.bundle(planar), tmp_path_factory.mktemp("c"), flags=QUICK)
+
+
+def test_home_is_the_default_guess(planar: Manipulator, library: CLibrary) -> None:
+    X = near_home(planar, STATES)["X"]
+    home = np.tile(planar.home.q, (STATES, 1))
+    (default,), status = library.batch("inverse_kinematics", X, None)
+    (given,), _ = library.batch("inverse_kinematics", X, home)
+    assert (status == OK).all()
+    np.testing.assert_array_equal(default, given)
+    (single,), code = library.single("inverse_kinematics", X[3], None)
+    assert code == OK
+    np.testing.assert_array_equal(single, default[3])
+
+
+def test_the_guess_chooses_the_closure(planar: Manipulator, library: CLibrary) -> None:
+    module, X = models.module(planar), near_home(planar, 64)["X"]
+    q0 = np.random.default_rng(3).uniform(-3.0, 3.0, (64, module.NJ))
+    (q,), status = library.batch("inverse_kinematics", X, q0)
+    want = module.inverse_kinematics(X, q0=q0)
+    np.testing.assert_array_equal(status != OK, np.isnan(want).any(axis=1))
+    both = status == OK
+    assert both.sum() > 20
+    turned = np.remainder(q - want + np.pi, 2.0 * np.pi) - np.pi
+    np.testing.assert_allclose(turned[both], 0.0, atol=1e-9)
+    assert (np.abs(q[both]) <= np.pi).all()
+    home, _ = library.batch("inverse_kinematics", X, None)
+    assert (np.abs(home[0] - q).max(axis=1)[both] > 0.5).any()
+
+
+@pytest.mark.parametrize("name", ["M", "dynamics", "inverse_dynamics", "leg_reactions", "energy"])
+def test_failure_of_one_state(planar: Manipulator, library: CLibrary, name: str) -> None:
+    given = near_home(planar, STATES)
+    api = library.api[name]
+    good, _ = library.batch(name, *(given[i.name] for i in api.inputs))
+    bad = {key: array.copy() for key, array in given.items()}
+    bad["X"][2, :2] = 1e3  # out of reach: no convergence
+    bad["q0"][5, 0] = np.nan
+    bad["X"][9, 0] = np.inf
+    bad["X"][10, :2] = -1e3  # in the remainder
+    want = np.full(STATES, OK)
+    want[[2, 5, 9, 10]] = NOT_CONVERGED, INVALID, INVALID, NOT_CONVERGED
+    found, status = library.batch(name, *(bad[i.name] for i in api.inputs))
+    np.testing.assert_array_equal(status, want)
+    for array, expected in zip(found, good, strict=True):
+        assert np.isnan(array[want != OK]).all()
+        np.testing.assert_array_equal(array[want == OK], expected[want == OK])
+    for k in (2, 5, 9, 10):
+        outputs, code = library.single(name, *(bad[i.name][k] for i in api.inputs))
+        assert code == want[k]
+        assert all(np.isnan(output).all() for output in outputs)
+
+
+def test_precisions(planar: Manipulator, library: CLibrary, tmp_path: Path) -> None:
+    given = near_home(planar, STATES)
+    inputs = [given[name] for name in ("X", "q0", "V", "A", "wrench")]
+    (want,), _ = library.batch("inverse_dynamics", *inputs)
+    for real, tolerance in (("float", 2e-4), ("long double", 1e-12)):
+        other = CLibrary(models.bundle(planar), tmp_path, real, flags=QUICK)
+        (found,), status = other.batch("inverse_dynamics", *inputs)
+        assert (status == OK).all()
+        assert np.abs(found - want).max() < tolerance * np.abs(want).max()
