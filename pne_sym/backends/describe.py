@@ -179,7 +179,7 @@ def _rule(f: ParameterField) -> str:
         return "inertia"
     if f.name.endswith("_mass") and not f.shape:
         return "mass"
-    return "unit" if f.name.endswith("_axis") else ""
+    return "unit" if f.name.endswith(("_axis", "_axis_link", "_axis_platform")) else ""
 
 
 def _literal(value: object) -> str:
