@@ -173,7 +173,7 @@ def _field(f: ParameterField) -> FieldView:
 
 
 def _rule(f: ParameterField) -> str:
-    if f.name.endswith("_base_frame"):
+    if f.name.endswith(("_base_frame", "_platform_joint_rotation")):
         return "rotation"
     if f.name.endswith("_inertia"):
         return "inertia"

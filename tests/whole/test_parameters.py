@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,9 +12,11 @@ import pytest
 
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.reader import checked
 from tests.models import catalogue, live_parameters, manifest, module, same_branch_spec, state_at
 from tests.oracle.closure import assemble
 from tests.oracle.comparison import relative_error
+from tests.oracle.mechanisms import mechanism
 from tests.oracle.projection import project
 from tests.oracle.specs import from_dict
 from tests.whole.cases import Array
@@ -140,6 +143,17 @@ def test_impossible_values(parameter: str) -> None:
     for make in (model.Parameters, model.Parameters().replace):
         with pytest.raises(ValueError, match=rf"Parameters: {parameter} {message}"):
             make(**{parameter: value})
+
+
+def test_the_rotation_of_a_rigid_platform_joint_is_one() -> None:
+    rng = np.random.default_rng(7)
+    legs = ["Px* Py* Pz* Rz0 Ry0 Rx | rigid"]
+    drawn = mechanism("translational", legs, rng, plain=True)
+    model = module(checked(replace(drawn, name="drawn")))
+    (name,) = (name for name in vars(model.Parameters()) if name.endswith("joint_rotation"))
+    turned = -getattr(model.Parameters(), name)
+    with pytest.raises(ValueError, match=f"Parameters: {name} must be rotation matrices"):
+        model.Parameters(**{name: turned})
 
 
 def test_unknown_names() -> None:
