@@ -173,13 +173,13 @@ def _field(f: ParameterField) -> FieldView:
 
 
 def _rule(f: ParameterField) -> str:
-    if f.name.endswith("_base_frame"):
+    if f.name.endswith(("_base_frame", "_platform_joint_rotation")):
         return "rotation"
     if f.name.endswith("_inertia"):
         return "inertia"
     if f.name.endswith("_mass") and not f.shape:
         return "mass"
-    return "unit" if f.name.endswith("_axis") else ""
+    return "unit" if f.name.endswith(("_axis", "_axis_link", "_axis_platform")) else ""
 
 
 def _literal(value: object) -> str:
