@@ -2987,9 +2987,12 @@ def _solve(a, b):
     b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
     if count <= _FEW:
         rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        return np.array(rows).reshape(*lead, n)
-    with np.errstate(all="ignore"):
-        return _solve_block(a, b).reshape(*lead, n)
+        x = np.array(rows).reshape(count, n)
+    else:
+        with np.errstate(all="ignore"):
+            x = _solve_block(a, b)
+    x[~np.isfinite(x).all(axis=1)] = np.nan
+    return x.reshape(*lead, n)
 
 
 def _solve_one(a, b):
@@ -3080,6 +3083,14 @@ def _together(failed, *arrays):
     return [array for array, _ in arrays]
 
 
+def _known(array, axes, *inputs):
+    """The array, NaN in every row in which one of its entries or an input is not finite."""
+    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
+    for value in inputs:
+        failed = failed | ~np.isfinite(value).all(axis=-1)
+    return _together(failed, (array, axes))[0]
+
+
 def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
@@ -3097,17 +3108,19 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
     tau = _vector("forward_dynamics", "tau", tau, NU)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    force = (matrix @ tau[..., None])[..., 0] + _external("forward_dynamics", wrench) - bias
+    external = _external("forward_dynamics", wrench)
+    with np.errstate(all="ignore"):
+        force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _solve(inertia, force)
 
 
 def complete_acceleration(X, V, A, p=None):
     """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
     """
-    A = np.array(_vector("complete_acceleration", "A", A, NV))
-    _vector("complete_acceleration", "X", X, NQ)
-    _vector("complete_acceleration", "V", V, NV)
-    return A
+    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
+    A = _vector("complete_acceleration", "A", A, NV)
+    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
@@ -3115,12 +3128,13 @@ def _drive_forces(matrix, directions, force, weights):
     del directions, weights
     rows = list(_DRIVEN_ROWS)
     tau = _solve(matrix[..., rows, :], force[..., rows])
-    return _together(np.isnan(force).any(axis=-1), (tau, 1))[0]
+    return _known(tau, 1, force)
 
 
 def null_space(X, p=None):
     """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
-    return np.zeros((*_vector("null_space", "X", X, NQ).shape[:-1], NU, 0))
+    X = _vector("null_space", "X", X, NQ)
+    return np.zeros((*X.shape[:-1], NU, 0))
 
 
 def inverse_kinematics(X, p=None):
@@ -3161,9 +3175,12 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, M(X, p), V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0] + 0.0 * kinetic
-    return kinetic + 0.0 * potential, potential
+    inertia = M(X, p)
+    with np.errstate(all="ignore"):
+        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
+    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
+    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
+    return kinetic + known, potential + known
 
 
 def forward_kinematics(q_actuated, X0, p=None):

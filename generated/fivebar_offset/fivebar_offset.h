@@ -14,9 +14,9 @@
  * wrench: fx, fy, mz
  *
  * Every function returns FIVEBAR_OFFSET_OK or why the state is impossible; then all its outputs are
- * NaN.  Of several causes the first counts: input that is not finite (INVALID), a leg that does
- * not reach (UNREACHABLE), a singular leg or matrix (SINGULAR), no convergence, a result that is
- * not finite (INVALID).  Functions ..._batch take n states one after another, write n codes to
+ * NaN.  Of several causes the first counts: input that is not finite (INVALID), no convergence
+ * (NOT_CONVERGED), a leg that does not reach (UNREACHABLE), a singular leg or matrix (SINGULAR),
+ * a result that is not finite (INVALID).  Functions ..._batch take n states one after another, write n codes to
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
@@ -105,7 +105,7 @@ typedef struct {
             h_star_y, m_star;
     /* legs of type rr */
     fivebar_offset_real J_1_rr_zz[1], d_G_rr_yy[1], g_r0_x[1], g_r0_y[1], h_1_rr_x[1], h_1_rr_y[1],
-            inv_rr_platform_joint_offset_x[1], n_c1_rr_t[1], n_c1_rr_x[1], potential_t[1],
+            inv_rr_platform_joint_offset_x[1], n_c_rr_t[1], n_c_rr_x[1], potential_t[1],
             potential_t_2[1], root_1_rr_t[1], rr_base_frame_xx[1], rr_base_frame_xy[1],
             rr_base_frame_yx[1], rr_base_frame_yy[1], rr_base_point_x[1], rr_base_point_y[1],
             rr_platform_joint_offset_x[1], rr_platform_point_x[1], rr_platform_point_y[1];

@@ -328,14 +328,14 @@ def _prepare(p):
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c1_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x
-    n_c1_rr_x = rr_platform_joint_offset_x/(sqrt(n_c1_rr_t))
+    n_c_rr_t = rr_platform_joint_offset_x*rr_platform_joint_offset_x
+    n_c_rr_x = rr_platform_joint_offset_x/(sqrt(n_c_rr_t))
     # (rr-G1) size of the leg, the measure of what is near singular
     size_rr_t = rr_base_point_x*rr_base_point_x + rr_base_point_y*rr_base_point_y
     size_rr_t_2 = (
     rr_platform_point_x*rr_platform_point_x + rr_platform_point_y*rr_platform_point_y
     )
-    size_rr_t_3 = n_c1_rr_t + size_rr_t + size_rr_t_2
+    size_rr_t_3 = n_c_rr_t + size_rr_t + size_rr_t_2
     size_rr = sqrt(size_rr_t_3)
     # (rr-K4) amplitude: off the manifold the nearest angle is taken
     root_1_rr_t = size_rr*size_rr*size_rr_t_3
@@ -458,8 +458,8 @@ def _prepare(p):
             "h_1_rr_x": np.broadcast_to(h_1_rr_x, _rr),
             "h_1_rr_y": np.broadcast_to(h_1_rr_y, _rr),
             "inv_rr_platform_joint_offset_x": np.broadcast_to(inv_rr_platform_joint_offset_x, _rr),
-            "n_c1_rr_t": np.broadcast_to(n_c1_rr_t, _rr),
-            "n_c1_rr_x": np.broadcast_to(n_c1_rr_x, _rr),
+            "n_c_rr_t": np.broadcast_to(n_c_rr_t, _rr),
+            "n_c_rr_x": np.broadcast_to(n_c_rr_x, _rr),
             "potential_t": np.broadcast_to(potential_t, _rr),
             "potential_t_2": np.broadcast_to(potential_t_2, _rr),
             "root_1_rr_t": np.broadcast_to(root_1_rr_t, _rr),
@@ -705,7 +705,7 @@ def _dynamics_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_1_rr_zz, d_G_rr_yy, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x,
-        n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+        n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -718,7 +718,7 @@ def _dynamics_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -770,17 +770,16 @@ def _dynamics_rr(c, k, x, s, f):
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x
-    n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x
+    n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
+    n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
     # (M10) moment of the column's unit force about the platform origin
-    Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x
+    Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
     # (M12) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1_rr_t = n_c1_rr_x*rel_rr_o_x
+    gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
     return (
     ok, (d_c_rr_t_2, d_c_rr_t_3, d_c_rr_t_4, M_ta_t, M_ta_t_2, M_aa_t, U_rr_t, U_rr_t_2, Z_a_t,),
-        (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c1_rr_t_2, n_c1_rr_t_3, Hk_a_1_rr_z,
-        -gamma_c1_rr_t,),
+        (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c_rr_t_2, n_c_rr_t_3, Hk_a_1_rr_z, -gamma_c1_rr_t,),
     )
 
 
@@ -995,7 +994,7 @@ def _M_before(c, X, f):
 def _M_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    d_G_rr_yy, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    d_G_rr_yy, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1008,7 +1007,7 @@ def _M_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1179,7 +1178,7 @@ def _Z_before(c, X, V, f):
 def _Z_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c1_rr_t,
+    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
         root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
         rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
         rr_platform_point_y,
@@ -1193,7 +1192,7 @@ def _Z_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1376,7 +1375,7 @@ def _H_before(c, X, f):
 def _H_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
+    inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
         rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1389,7 +1388,7 @@ def _H_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1490,7 +1489,7 @@ def _Hk_before(c, X, f):
 def _Hk_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1503,19 +1502,19 @@ def _Hk_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
     # (rr-K6) sine of the angle of joint 1 from its reference direction
     s_1_rr = inv_root_1_rr*rho2_1_rr_t*rr_platform_joint_offset_x
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c1_rr_t_2 = n_c1_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr)
-    n_c1_rr_t_3 = n_c1_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
+    n_c_rr_t_2 = n_c_rr_x*(c_1_rr*rr_base_frame_yy - rr_base_frame_yx*s_1_rr)
+    n_c_rr_t_3 = n_c_rr_x*(c_1_rr*rr_base_frame_xy - rr_base_frame_xx*s_1_rr)
     # (M10) moment of the column's unit force about the platform origin
-    Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x
+    Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
-    return (ok, (), (-n_c1_rr_t_2, n_c1_rr_t_3, Hk_a_1_rr_z,),)
+    return (ok, (), (-n_c_rr_t_2, n_c_rr_t_3, Hk_a_1_rr_z,),)
 
 
 # constraint_bias: 30 mul, 16 add, 1 div, 1 sqrt, 0 trig
@@ -1544,7 +1543,7 @@ def _constraint_bias_before(c, X, V, f):
 def _constraint_bias_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx,
+    inv_rr_platform_joint_offset_x, n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx,
         rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1557,7 +1556,7 @@ def _constraint_bias_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1579,7 +1578,7 @@ def _constraint_bias_rr(c, k, x, s, f):
         S_dot_rr_t_2*axis_y_rr_axes1_in_base_y*omega_z
     )
     # (M12) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1_rr_t = n_c1_rr_x*rel_rr_o_x
+    gamma_c1_rr_t = n_c_rr_x*rel_rr_o_x
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
     return (ok, (), (-gamma_c1_rr_t,),)
 
@@ -1636,8 +1635,8 @@ def _required_before(c, X, V, A, f):
 def _required_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c1_rr_t,
-        n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
+        n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1650,7 +1649,7 @@ def _required_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -1664,10 +1663,10 @@ def _required_rr(c, k, x, s, f):
     # (M8) moment of the column's unit force about the platform origin
     H_a_1_rr_z = q_rr_in_base_x*w_1_rr_t_2 - q_rr_in_base_y*w_1_rr_t
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x
-    n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x
+    n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
+    n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
     # (M10) moment of the column's unit force about the platform origin
-    Hk_a_1_rr_z = n_c1_rr_t_2*q_rr_in_base_y + n_c1_rr_t_3*q_rr_in_base_x
+    Hk_a_1_rr_z = n_c_rr_t_2*q_rr_in_base_y + n_c_rr_t_3*q_rr_in_base_x
     # (rr-A2) acceleration of the connection point without its centripetal part
     a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
     a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
@@ -1689,7 +1688,7 @@ def _required_rr(c, k, x, s, f):
     R_a_t = c_rr_t_2*q_rr_in_base_x - c_rr_t*q_rr_in_base_y
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
     return (
-    ok, (c_rr_t, c_rr_t_2, R_a_t,), (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c1_rr_t_2, n_c1_rr_t_3,
+    ok, (c_rr_t, c_rr_t_2, R_a_t,), (w_1_rr_t, w_1_rr_t_2, H_a_1_rr_z, -n_c_rr_t_2, n_c_rr_t_3,
         Hk_a_1_rr_z,),
     )
 
@@ -1869,9 +1868,9 @@ def _inverse_kinematics_rr(c, k, x, s, f):
     sqrt = f.sqrt
     atan2 = f.atan2
     (
-    n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
-        rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
-        rr_platform_point_x, rr_platform_point_y,
+    n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy,
+        rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x, rr_platform_point_x,
+        rr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rr-K1) from the base point to the connection point
@@ -1880,7 +1879,7 @@ def _inverse_kinematics_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     # (rr-K7) displacement of joint 1
@@ -1966,7 +1965,7 @@ def _joint_rates_before(c, X, V, f):
 def _joint_rates_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
+    inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
         rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -1979,7 +1978,7 @@ def _joint_rates_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2104,7 +2103,7 @@ def _joint_accelerations_before(c, X, V, A, f):
 def _joint_accelerations_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    inv_rr_platform_joint_offset_x, n_c1_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
+    inv_rr_platform_joint_offset_x, n_c_rr_t, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy,
         rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2117,7 +2116,7 @@ def _joint_accelerations_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2260,7 +2259,7 @@ def _constraints_before(c, X, f):
 def _constraints_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    n_c1_rr_t, n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    n_c_rr_t, n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2271,12 +2270,12 @@ def _constraints_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     # (M11) distance by which the leg misses the connection point, along a direction left out
     phi_c1_rr_t = (
-    n_c1_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
+    n_c_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
         inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -
         rr_platform_joint_offset_x)
     )
@@ -2319,8 +2318,8 @@ def _legs_before(c, X, V, A, f):
 def _legs_rr(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c1_rr_t,
-        n_c1_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
+    J_1_rr_zz, g_r0_x, g_r0_y, h_1_rr_x, h_1_rr_y, inv_rr_platform_joint_offset_x, n_c_rr_t,
+        n_c_rr_x, root_1_rr_t, rr_base_frame_xx, rr_base_frame_xy, rr_base_frame_yx,
         rr_base_frame_yy, rr_base_point_x, rr_base_point_y, rr_platform_joint_offset_x,
         rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2333,7 +2332,7 @@ def _legs_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2345,8 +2344,8 @@ def _legs_rr(c, k, x, s, f):
     w_1_rr_t = axis_y_rr_axes1_in_base_x*inv_rr_platform_joint_offset_x
     w_1_rr_t_2 = axis_y_rr_axes1_in_base_y*inv_rr_platform_joint_offset_x
     # (rr-V3) unit vector that the leg's freedoms leave out
-    n_c1_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c1_rr_x
-    n_c1_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c1_rr_x
+    n_c_rr_t_2 = axis_y_rr_axes1_in_base_y*n_c_rr_x
+    n_c_rr_t_3 = axis_y_rr_axes1_in_base_x*n_c_rr_x
     # (rr-A2) acceleration of the connection point without its centripetal part
     a_p_rr_x = t_ddot_x - alpha_z*q_rr_in_base_y
     a_p_rr_y = t_ddot_y + alpha_z*q_rr_in_base_x
@@ -2365,7 +2364,7 @@ def _legs_rr(c, k, x, s, f):
     c_rr_t = G_rr_t*axis_y_rr_axes1_in_base_x
     c_rr_t_2 = G_rr_t*axis_y_rr_axes1_in_base_y
     ok = (abs(rho2_1_rr) > _TOLERANCE * _TOLERANCE * root_1_rr_t)
-    return (ok, (), (-c_rr_t, -c_rr_t_2, w_1_rr_t, w_1_rr_t_2, -n_c1_rr_t_2, n_c1_rr_t_3,),)
+    return (ok, (), (-c_rr_t, -c_rr_t_2, w_1_rr_t, w_1_rr_t_2, -n_c_rr_t_2, n_c_rr_t_3,),)
 
 
 def _legs_rrr(c, k, x, s, f):
@@ -2538,7 +2537,7 @@ def _potential_rr(c, k, x, s, f):
     sqrt = f.sqrt
     gravity_x, gravity_y = c
     (
-    h_1_rr_x, h_1_rr_y, n_c1_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
+    h_1_rr_x, h_1_rr_y, n_c_rr_t, potential_t, potential_t_2, root_1_rr_t, rr_base_frame_xx,
         rr_base_frame_xy, rr_base_frame_yx, rr_base_frame_yy, rr_base_point_x, rr_base_point_y,
         rr_platform_joint_offset_x, rr_platform_point_x, rr_platform_point_y,
     ) = k
@@ -2549,7 +2548,7 @@ def _potential_rr(c, k, x, s, f):
     # (rr-K3) squared amplitude
     rho2_1_rr_t = S_rr_x*rr_base_frame_xy + S_rr_y*rr_base_frame_yy
     rho2_1_rr_t_2 = S_rr_x*rr_base_frame_xx + S_rr_y*rr_base_frame_yx
-    rho2_1_rr = n_c1_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
+    rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
     c_1_rr = inv_root_1_rr*rho2_1_rr_t_2*rr_platform_joint_offset_x
@@ -2645,7 +2644,7 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 2)), ('Hk', (3, 1)), ('constraint_
             "rr",
 (),
 ('J_1_rr_zz', 'd_G_rr_yy', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y',
-            'inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t',
+            'inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t',
             'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy',
             'rr_base_point_x', 'rr_base_point_y', 'rr_platform_joint_offset_x',
             'rr_platform_point_x', 'rr_platform_point_y'),
@@ -2707,7 +2706,7 @@ arrays=(('M', (3, 3)),),
             _M_rr,
             "rr",
 (),
-('d_G_rr_yy', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+('d_G_rr_yy', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -2758,8 +2757,8 @@ arrays=(('Z', (3,)),),
             "rr",
 (),
 ('J_1_rr_zz', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y', 'inv_rr_platform_joint_offset_x',
-            'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
-            'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
+            'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
+            'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
 (0, 1, 2, 3, 6),
@@ -2806,7 +2805,7 @@ arrays=(('H', (3, 2)),),
             _H_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -2853,7 +2852,7 @@ arrays=(('Hk', (3, 1)),),
             _Hk_rr,
             "rr",
 (),
-('n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+('n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -2881,7 +2880,7 @@ arrays=(('constraint_bias', (1,)),),
             _constraint_bias_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -2909,7 +2908,7 @@ arrays=(('required', (3,)), ('H', (3, 2)), ('Hk', (3, 1))),
             "rr",
 (),
 ('J_1_rr_zz', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y', 'inv_rr_platform_joint_offset_x',
-            'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+            'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -2966,7 +2965,7 @@ arrays=(('q', (3,)),),
             _inverse_kinematics_rr,
             "rr",
 (),
-('n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
+('n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx',
             'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -3008,7 +3007,7 @@ arrays=(('qd', (3,)),),
             _joint_rates_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -3053,7 +3052,7 @@ arrays=(('qdd', (3,)),),
             _joint_accelerations_rr,
             "rr",
 (),
-('inv_rr_platform_joint_offset_x', 'n_c1_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
+('inv_rr_platform_joint_offset_x', 'n_c_rr_t', 'root_1_rr_t', 'rr_base_frame_xx',
             'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x',
             'rr_base_point_y', 'rr_platform_joint_offset_x', 'rr_platform_point_x',
             'rr_platform_point_y'),
@@ -3098,7 +3097,7 @@ arrays=(('constraints', (1,)),),
             _constraints_rr,
             "rr",
 (),
-('n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+('n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -3125,7 +3124,7 @@ arrays=(('leg_force', (2, 3)), ('drive', (2, 3)), ('constraint_direction', (1, 3
             "rr",
 (),
 ('J_1_rr_zz', 'g_r0_x', 'g_r0_y', 'h_1_rr_x', 'h_1_rr_y', 'inv_rr_platform_joint_offset_x',
-            'n_c1_rr_t', 'n_c1_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
+            'n_c_rr_t', 'n_c_rr_x', 'root_1_rr_t', 'rr_base_frame_xx', 'rr_base_frame_xy',
             'rr_base_frame_yx', 'rr_base_frame_yy', 'rr_base_point_x', 'rr_base_point_y',
             'rr_platform_joint_offset_x', 'rr_platform_point_x', 'rr_platform_point_y'),
 (),
@@ -3177,7 +3176,7 @@ arrays=(('potential', (1,)),),
             _potential_rr,
             "rr",
 ('gravity_x', 'gravity_y'),
-('h_1_rr_x', 'h_1_rr_y', 'n_c1_rr_t', 'potential_t', 'potential_t_2', 'root_1_rr_t',
+('h_1_rr_x', 'h_1_rr_y', 'n_c_rr_t', 'potential_t', 'potential_t_2', 'root_1_rr_t',
             'rr_base_frame_xx', 'rr_base_frame_xy', 'rr_base_frame_yx', 'rr_base_frame_yy',
             'rr_base_point_x', 'rr_base_point_y', 'rr_platform_joint_offset_x',
             'rr_platform_point_x', 'rr_platform_point_y'),
@@ -3226,9 +3225,12 @@ def _solve(a, b):
     b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
     if count <= _FEW:
         rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        return np.array(rows).reshape(*lead, n)
-    with np.errstate(all="ignore"):
-        return _solve_block(a, b).reshape(*lead, n)
+        x = np.array(rows).reshape(count, n)
+    else:
+        with np.errstate(all="ignore"):
+            x = _solve_block(a, b)
+    x[~np.isfinite(x).all(axis=1)] = np.nan
+    return x.reshape(*lead, n)
 
 
 def _solve_one(a, b):
@@ -3319,6 +3321,14 @@ def _together(failed, *arrays):
     return [array for array, _ in arrays]
 
 
+def _known(array, axes, *inputs):
+    """The array, NaN in every row in which one of its entries or an input is not finite."""
+    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
+    for value in inputs:
+        failed = failed | ~np.isfinite(value).all(axis=-1)
+    return _together(failed, (array, axes))[0]
+
+
 def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
@@ -3337,17 +3347,19 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
     tau = _vector("forward_dynamics", "tau", tau, NU)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    force = (matrix @ tau[..., None])[..., 0] + _external("forward_dynamics", wrench) - bias
+    external = _external("forward_dynamics", wrench)
+    with np.errstate(all="ignore"):
+        force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _constrained_acceleration(inertia, rest[0], rest[1], force)
 
 
 def complete_acceleration(X, V, A, p=None):
     """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
     """
-    A = np.array(_vector("complete_acceleration", "A", A, NV))
-    _vector("complete_acceleration", "X", X, NQ)
-    _vector("complete_acceleration", "V", V, NV)
-    return A
+    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
+    A = _vector("complete_acceleration", "A", A, NV)
+    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
@@ -3433,9 +3445,12 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, M(X, p), V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0] + 0.0 * kinetic
-    return kinetic + 0.0 * potential, potential
+    inertia = M(X, p)
+    with np.errstate(all="ignore"):
+        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
+    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
+    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
+    return kinetic + known, potential + known
 
 
 def forward_kinematics(q_actuated, X0, p=None):
@@ -3489,9 +3504,10 @@ def _find_pose(q_actuated, X, p):
 
 def rotation(X):
     """base_R_platform (..., 2, 2) at X (..., NQ)."""
-    phi = _vector("rotation", "X", X, NQ)[..., 2]
-    c, s = np.cos(phi), np.sin(phi)
-    return np.stack((np.stack((c, -s), axis=-1), np.stack((s, c), axis=-1)), axis=-2)
+    X = _vector("rotation", "X", X, NQ)
+    with np.errstate(all="ignore"):
+        c, s = np.cos(X[..., 2]), np.sin(X[..., 2])
+    return _known(np.stack((np.stack((c, -s), axis=-1), np.stack((s, c), axis=-1)), axis=-2), 2, X)
 
 
 def pose(t, R):
@@ -3502,13 +3518,13 @@ def pose(t, R):
     phi = np.arctan2(R[..., 1, 0], R[..., 0, 0])[..., None]
     lead = np.broadcast_shapes(t.shape[:-1], phi.shape[:-1])
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, phi, np.zeros(NQ - 3))]
-    return np.concatenate(parts, axis=-1)
+    return _known(np.concatenate(parts, axis=-1), 1, R.reshape(*R.shape[:-2], 4))
 
 
 def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV): V itself."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    return np.array(np.broadcast_to(V, np.broadcast_shapes(X.shape, V.shape)))
+    return _known(np.array(np.broadcast_to(V, np.broadcast_shapes(X.shape, V.shape))), 1, X)
 
 
 def _moved(X, step):

@@ -11,13 +11,16 @@ typedef fivebar_prismatic_real real;
 typedef fivebar_prismatic_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? FIVEBAR_PRISMATIC_INVALID
+            : t->diverged[k] > 0 ? FIVEBAR_PRISMATIC_NOT_CONVERGED
             : t->unreachable[k] > 0 ? FIVEBAR_PRISMATIC_UNREACHABLE
             : t->singular[k] > 0 ? FIVEBAR_PRISMATIC_SINGULAR
-            : t->diverged[k] > 0 ? FIVEBAR_PRISMATIC_NOT_CONVERGED
             : t->overflow[k] > 0 ? FIVEBAR_PRISMATIC_INVALID : FIVEBAR_PRISMATIC_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == FIVEBAR_PRISMATIC_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != FIVEBAR_PRISMATIC_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -425,1479 +445,62 @@ int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_pr
     return FIVEBAR_PRISMATIC_OK;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics: 100 mul, 62 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[5][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[5][8], entry[2][8], singular[8];
-} dynamics_results_rpr;
-
-INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-    }
-}
-
-INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real Sigma_1_xx = m->Sigma_1_xx[i];
-        const real Sigma_1_yy = m->Sigma_1_yy[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_group_1_x = m->h_group_1_x[i];
-        const real h_group_1_y = m->h_group_1_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_yx = h_2_y*inv_root_1;
-        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1);
-        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx;
-        const real Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx;
-        const real Q_t_4 = 2*Q_t_2*axis_x_y;
-        const real Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y;
-        const real Q_t_6 = 2*Q_t_3*axis_x_x;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-A7) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = 2*S_dot_tip_x*inv_root_1*qd_1;
-        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) -
-            Sigma_1_xx*qdd_1_o - Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y -
-            axis_x_y*gravity_x);
-        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x;
-        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z;
-        /* (rpr-N25) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y;
-        const real U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y;
-        o->sum[0][k] = Q_t_4;  /* total_rpr_xx */
-        o->sum[1][k] = Q_t_5;  /* total_rpr_xy */
-        o->sum[2][k] = Q_t_6;  /* total_rpr_yy */
-        o->sum[3][k] = U_in_base_x;  /* total_rpr_x */
-        o->sum[4][k] = U_in_base_y;  /* total_rpr_y */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void dynamics_place_rpr(size_t w, const dynamics_results_rpr *o, size_t leg, size_t first,
-    real *H, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rpr_xx = s->sum[0][k];
-        const real total_rpr_xy = s->sum[1][k];
-        const real total_rpr_yy = s->sum[2][k];
-        const real total_rpr_x = s->sum[3][k];
-        const real total_rpr_y = s->sum[4][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rpr_xx;
-        const real M_tt_yy = m_star - total_rpr_yy;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rpr_x - Z_p_x;
-        const real Z_t_y = total_rpr_y - Z_p_y;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rpr_xy;
-        M[2*w + k] = total_rpr_xy;
-        M[3*w + k] = M_tt_yy;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_rpr results_rpr;
-    dynamics_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 5; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 2);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            dynamics_place_rpr(w, &results_rpr, leg, 0, H, t);
-            for (size_t n = 0; n < 5; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, int *code)
-{
-    real M_of[4*LANES], Z_of[2*LANES], H_of[4*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 4, w, t);
-    check_output(Z_of, 2, w, t);
-    check_output(H_of, 4, w, t);
-    judge(t, w, code);
-    deliver(M_of, 4, w, code, M);
-    deliver(Z_of, 2, w, code, Z);
-    deliver(H_of, 4, w, code, H);
-}
-
-/* ---- M: 48 mul, 32 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], sum[3][LANES];
-} M_values;
-typedef struct {
-    real sum[3][8], singular[8];
-} M_results_rpr;
-
-INLINE void M_before(size_t w, const real *X, M_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_yx = h_2_y*inv_root_1;
-        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1);
-        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = R(0.5)*d_c_yy;
-        const real Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx;
-        const real Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx;
-        const real Q_t_4 = 2*Q_t_2*axis_x_y;
-        const real Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y;
-        const real Q_t_6 = 2*Q_t_3*axis_x_x;
-        o->sum[0][k] = Q_t_4;  /* total_rpr_xx */
-        o->sum[1][k] = Q_t_5;  /* total_rpr_xy */
-        o->sum[2][k] = Q_t_6;  /* total_rpr_yy */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void M_place_rpr(size_t w, const M_results_rpr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rpr_xx = s->sum[0][k];
-        const real total_rpr_xy = s->sum[1][k];
-        const real total_rpr_yy = s->sum[2][k];
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rpr_xx;
-        const real M_tt_yy = m_star - total_rpr_yy;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_rpr_xy;
-        M[2*w + k] = total_rpr_xy;
-        M[3*w + k] = M_tt_yy;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_rpr results_rpr;
-    M_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 2);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            M_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            M_place_rpr(w, &results_rpr, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
-{
-    real M_of[4*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    M_run(m, w, X, M_of, t);
-    check_output(M_of, 4, w, t);
-    judge(t, w, code);
-    deliver(M_of, 4, w, code, M);
-}
-
-/* ---- Z: 70 mul, 44 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[2][LANES];
-} Z_values;
-typedef struct {
-    real sum[2][8], singular[8];
-} Z_results_rpr;
-
-INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-    }
-}
-
-INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real Sigma_1_xx = m->Sigma_1_xx[i];
-        const real Sigma_1_yy = m->Sigma_1_yy[i];
-        const real branch_1 = m->branch_1[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_group_1_x = m->h_group_1_x[i];
-        const real h_group_1_y = m->h_group_1_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-A7) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o = 2*S_dot_tip_x*inv_root_1*qd_1;
-        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_o_z = h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) -
-            Sigma_1_xx*qdd_1_o - Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y -
-            axis_x_y*gravity_x);
-        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x;
-        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z;
-        /* (rpr-N25) velocity and gravity terms of the leg force */
-        const real U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y;
-        const real U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y;
-        o->sum[0][k] = U_in_base_x;  /* total_rpr_x */
-        o->sum[1][k] = U_in_base_y;  /* total_rpr_y */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void Z_place_rpr(size_t w, const Z_results_rpr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_after(const prepared *m, size_t w, const Z_values *s, real *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real total_rpr_x = s->sum[0][k];
-        const real total_rpr_y = s->sum[1][k];
-        const real Z_p_x = m->Z_p_x;
-        const real Z_p_y = m->Z_p_y;
-        /* (M3) translational part of Z */
-        const real Z_t_x = total_rpr_x - Z_p_x;
-        const real Z_t_y = total_rpr_y - Z_p_y;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-    }
-}
-
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
-{
-    Z_values values, *const s = &values;
-    Z_results_rpr results_rpr;
-    Z_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 2);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            Z_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            Z_place_rpr(w, &results_rpr, 0, t);
-            for (size_t n = 0; n < 2; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    Z_after(m, w, s, Z);
-}
-
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
-{
-    real Z_of[2*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 2, w, t);
-    judge(t, w, code);
-    deliver(Z_of, 2, w, code, Z);
-}
-
-/* ---- H: 18 mul, 14 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} H_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} H_results_rpr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void H_place_rpr(size_t w, const H_results_rpr *o, size_t leg, size_t first, real *H,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
-{
-    H_values values, *const s = &values;
-    H_results_rpr results_rpr;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            H_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            H_place_rpr(w, &results_rpr, leg, 0, H, t);
-        }
-    }
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
-{
-    real H_of[4*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    H_run(m, w, X, H_of, t);
-    check_output(H_of, 4, w, t);
-    judge(t, w, code);
-    deliver(H_of, 4, w, code, H);
-}
-
-/* ---- required: 86 mul, 58 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
-        f_p_x[LANES], f_p_y[LANES], sum[2][LANES];
-} required_values;
-typedef struct {
-    real sum[2][8], entry[2][8], singular[8];
-} required_results_rpr;
-
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        const real A_0 = A[2*k + 0];
-        const real A_1 = A[2*k + 1];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        /* (E1) acceleration of the platform origin, less gravity */
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
-        const real f_p_x = a_t_x*m_star;
-        const real f_p_y = a_t_y*m_star;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-    }
-}
-
-INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1 = inv_root_1*px_1;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*py_1;
-        /* (rpr-A2) acceleration of the connection point */
-        const real S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x;
-        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
-        const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
-        /* (rpr-A6) acceleration of joint 1 */
-        const real qdd_1 = inv_root_1*rel_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        const real acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x;
-        const real acc_2_y = S_ddot_tip_y - g_r1_y;
-        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y -
-            g_r1_y*h_1_x;
-        /* (rpr-N5) inertia force of link 2 from its turning about its reference point */
-        const real phi_2_x = -W_1_t*h_2_x - h_2_y*qdd_1;
-        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z;
-        const real c_in_base_x = -axis_x_x*phi_2_x - axis_x_y*c_y;
-        const real c_in_base_y = axis_x_x*c_y - axis_x_y*phi_2_x;
-        o->sum[0][k] = c_in_base_x;  /* total_rpr_x */
-        o->sum[1][k] = c_in_base_y;  /* total_rpr_y */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void required_place_rpr(size_t w, const required_results_rpr *o, size_t leg, size_t first,
-    real *H, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(2 + leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void required_after(size_t w, const required_values *s, real *required)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real total_rpr_x = s->sum[0][k];
-        const real total_rpr_y = s->sum[1][k];
-        /* (E3) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x - total_rpr_x;
-        const real R_t_y = f_p_y - total_rpr_y;
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-    }
-}
-
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
-{
-    required_values values, *const s = &values;
-    required_results_rpr results_rpr;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 2; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 2);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            required_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            required_place_rpr(w, &results_rpr, leg, 0, H, t);
-            for (size_t n = 0; n < 2; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    required_after(w, s, required);
-}
-
-/* ---- inverse_kinematics: 18 mul, 14 add, 2 div, 2 sqrt, 2 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} inverse_kinematics_results_rpr;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-    }
-}
-
-INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        /* (rpr-K9) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = root_1;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void inverse_kinematics_place_rpr(size_t w, const inverse_kinematics_results_rpr *o, size_t
-    leg, size_t first, real *q, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
-{
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rpr results_rpr;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_place_rpr(w, &results_rpr, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            inverse_kinematics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            inverse_kinematics_place_rpr(w, &results_rpr, leg, 0, q, t);
-        }
-    }
-}
-
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
-{
-    real q_of[4*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 4, w, t);
-    judge(t, w, code);
-    deliver(q_of, 4, w, code, q);
-}
-
-/* ---- joint_rates: 28 mul, 18 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_rates_results_rpr;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-    }
-}
-
-INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        o->entry[0][k] = qd_1;
-        o->entry[1][k] = S_dot_tip_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void joint_rates_place_rpr(size_t w, const joint_rates_results_rpr *o, size_t leg, size_t
-    first, real *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
-    verdict *t)
-{
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rpr results_rpr;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_place_rpr(w, &results_rpr, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_rates_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            joint_rates_place_rpr(w, &results_rpr, leg, 0, qd, t);
-        }
-    }
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *rates, int *code)
-{
-    real qd_of[4*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 4, w, t);
-    judge(t, w, code);
-    deliver(qd_of, 4, w, code, rates);
-}
-
-/* ---- joint_accelerations: 46 mul, 26 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_accelerations_results_rpr;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        const real A_0 = A[2*k + 0];
-        const real A_1 = A[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-    }
-}
-
-INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real branch_1 = m->branch_1[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + qd_1*qd_1*root_1;
-        const real rel_y = axis_x_x*t_ddot_y - 2*S_dot_tip_x*qd_1 - axis_x_y*t_ddot_x;
-        /* (rpr-A6) acceleration of joint 1 */
-        const real qdd_1 = inv_root_1*rel_y;
-        o->entry[0][k] = qdd_1;
-        o->entry[1][k] = rel_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void joint_accelerations_place_rpr(size_t w, const joint_accelerations_results_rpr *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
-{
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rpr results_rpr;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_place_rpr(w, &results_rpr, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            joint_accelerations_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            joint_accelerations_place_rpr(w, &results_rpr, leg, 0, qdd, t);
-        }
-    }
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *accelerations, int *code)
-{
-    real qdd_of[4*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    check_input(A, 2, w, t);
-    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 4, w, t);
-    judge(t, w, code);
-    deliver(qdd_of, 4, w, code, accelerations);
-}
-
-/* ---- legs: 88 mul, 54 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
-} legs_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} legs_results_rpr;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        const real A_0 = A[2*k + 0];
-        const real A_1 = A[2*k + 1];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-    }
-}
-
-INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real J_group_1_zz = m->J_group_1_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        const real axis_x_x = S_x*inv_root_1;
-        const real axis_x_y = S_y*inv_root_1;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_t = qd_1*qd_1;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1 = inv_root_1*px_1;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*py_1;
-        /* (rpr-A2) acceleration of the connection point */
-        const real S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x;
-        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
-        const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
-        /* (rpr-A6) acceleration of joint 1 */
-        const real qdd_1 = inv_root_1*rel_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
-        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
-        const real acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x;
-        const real acc_2_y = S_ddot_tip_y - g_r1_y;
-        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y -
-            g_r1_y*h_1_x;
-        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z;
-        /* (rpr-N26) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_x = W_1_t*h_2_x + h_2_y*qdd_1 - acc_2_x*rpr_link2_mass;
-        const real c_true_y = c_y - acc_2_y*rpr_link2_mass;
-        const real c_true_in_base_x = axis_x_x*c_true_x - axis_x_y*c_true_y;
-        const real c_true_in_base_y = axis_x_x*c_true_y + axis_x_y*c_true_x;
-        o->entry[0][k] = c_true_in_base_x;
-        o->entry[1][k] = c_true_in_base_y;
-        o->entry[2][k] = axis_x_x;
-        o->entry[3][k] = axis_x_y;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void legs_place_rpr(size_t w, const legs_results_rpr *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        drive[(3*leg)*w + k] = o->entry[2][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
-{
-    legs_values values, *const s = &values;
-    legs_results_rpr results_rpr;
-    clear(leg_force, 6*w);
-    clear(drive, 6*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_place_rpr(w, &results_rpr, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            legs_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            legs_place_rpr(w, &results_rpr, leg, 0, leg_force, drive, t);
-        }
-    }
-}
-
-/* ---- potential: 46 mul, 38 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], potential_t[LANES], sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_rpr;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        /* (V1) potential energy */
-        const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
-            m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->potential_t[k] = potential_t;
-    }
-}
-
-INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real branch_1 = m->branch_1[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_x = m->h_1_x[i];
-        const real h_1_y = m->h_1_y[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_link1_mass = m->rpr_link1_mass[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
-        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1 = 1/root_1;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1 = inv_root_1*px_1;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*py_1;
-        /* (V1) potential energy */
-        const real potential_t_2 = (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x +
-            rpr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y +
-            rpr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1));
-        o->sum[0][k] = potential_t_2;  /* total_rpr */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
-    }
-}
-
-INLINE void potential_place_rpr(size_t w, const potential_results_rpr *o, size_t first, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_rpr = s->sum[0][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t - total_rpr;
-        potential[0*w + k] = potential_;
-    }
-}
-
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
-{
-    potential_values values, *const s = &values;
-    potential_results_rpr results_rpr;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        potential_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 2);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 2; ++leg) {
-            potential_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            potential_place_rpr(w, &results_rpr, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    potential_after(w, s, potential);
-}
-
 /* ---- linear equations ---- */
 
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
 {
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
     }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
         }
         for (size_t j = 0; j < stride; ++j) {
             const real moved = a[best*stride + j];
             a[best*stride + j] = a[p*stride + j];
             a[p*stride + j] = moved;
         }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
         for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
         }
     }
     for (size_t p = n; p-- > 0;) {
@@ -1908,24 +511,44 @@ INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
 {
-    real larger[LANES];
+    real swap[LANES], keep[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
     }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
         }
     }
 }
 
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
@@ -1933,8 +556,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
             for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
         for (size_t k = 0; k < LANES; ++k) {
@@ -1947,12 +569,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -1990,12 +610,12 @@ INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *sin
     }
 }
 
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
+/* Add the wrench to a generalised force; extra coordinates get none. */
 INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
 {
     for (size_t k = 0; k < w; ++k) {
         for (size_t e = 0; e < 2; ++e) {
-            force[e*w + k] += sign*wrench[2*k + e];
+            force[e*w + k] += sign*wrench[e*w + k];
         }
     }
 }
@@ -2139,6 +759,1461 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics: 100 mul, 62 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[5][LANES];
+} dynamics_values;
+typedef struct {
+    real sum[5][8], entry[2][8], singular[8];
+} dynamics_results_rpr;
+
+INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+    }
+}
+
+INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const dynamics_values
+    *s, size_t states, size_t count, int add, dynamics_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real J_group_1_zz = m->J_group_1_zz[i];
+        const real Sigma_1_xx = m->Sigma_1_xx[i];
+        const real Sigma_1_yy = m->Sigma_1_yy[i];
+        const real branch_1 = m->branch_1[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_group_1_x = m->h_group_1_x[i];
+        const real h_group_1_y = m->h_group_1_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_yx = h_2_y*inv_root_1;
+        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1);
+        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = R(0.5)*d_c_yy;
+        const real Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx;
+        const real Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx;
+        const real Q_t_4 = 2*Q_t_2*axis_x_y;
+        const real Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y;
+        const real Q_t_6 = 2*Q_t_3*axis_x_x;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
+        /* (rpr-A7) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_o = 2*S_dot_tip_x*inv_root_1*qd_1;
+        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real mu_1_o_z = h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) -
+            Sigma_1_xx*qdd_1_o - Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y -
+            axis_x_y*gravity_x);
+        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x;
+        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z;
+        /* (rpr-N25) velocity and gravity terms of the leg force */
+        const real U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y;
+        const real U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_4 : Q_t_4;  /* total_rpr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_5 : Q_t_5;  /* total_rpr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_6 : Q_t_6;  /* total_rpr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + U_in_base_x : U_in_base_x;  /* total_rpr_x */
+        o->sum[4][k] = add ? o->sum[4][k] + U_in_base_y : U_in_base_y;  /* total_rpr_y */
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void dynamics_place_rpr(size_t w, const dynamics_results_rpr *o, size_t leg, size_t first,
+    real *H, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(2 + leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
+    *Z)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rpr_xx = s->sum[0][k];
+        const real total_rpr_xy = s->sum[1][k];
+        const real total_rpr_yy = s->sum[2][k];
+        const real total_rpr_x = s->sum[3][k];
+        const real total_rpr_y = s->sum[4][k];
+        const real Z_p_x = m->Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        const real m_star = m->m_star;
+        /* (M1) translational block of M */
+        const real M_tt_xx = m_star - total_rpr_xx;
+        const real M_tt_yy = m_star - total_rpr_yy;
+        /* (M3) translational part of Z */
+        const real Z_t_x = total_rpr_x - Z_p_x;
+        const real Z_t_y = total_rpr_y - Z_p_y;
+        M[0*w + k] = M_tt_xx;
+        M[1*w + k] = total_rpr_xy;
+        M[2*w + k] = total_rpr_xy;
+        M[3*w + k] = M_tt_yy;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+    }
+}
+
+INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
+    *Z, real *H, verdict *t)
+{
+    dynamics_values values, *const s = &values;
+    dynamics_results_rpr results_rpr;
+    dynamics_before(w, X, V, s);
+    if (w == 1) {  /* the legs side by side */
+        dynamics_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            dynamics_place_rpr(w, &results_rpr, leg, leg, H, t);
+        }
+        for (size_t n = 0; n < 5; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            dynamics_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            dynamics_place_rpr(w, &results_rpr, leg, 0, H, t);
+        }
+        for (size_t n = 0; n < 5; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    dynamics_after(m, w, s, M, Z);
+}
+
+INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
+    *Z, real *H, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], M_of[4*LANES], Z_of[2*LANES], H_of[4*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
+    check(4, w, M_of, t->overflow);
+    check(2, w, Z_of, t->overflow);
+    check(4, w, H_of, t->overflow);
+    judge(t, w, code);
+    deliver(M_of, 4, w, code, M);
+    deliver(Z_of, 2, w, code, Z);
+    deliver(H_of, 4, w, code, H);
+}
+
+/* ---- M: 48 mul, 32 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], sum[3][LANES];
+} M_values;
+typedef struct {
+    real sum[3][8], singular[8];
+} M_results_rpr;
+
+INLINE void M_before(size_t w, const real *X, M_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+    }
+}
+
+INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
+    states, size_t count, int add, M_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real J_group_1_zz = m->J_group_1_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_yx = h_2_y*inv_root_1;
+        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_yy = -h_2_x*inv_root_1 - inv_root_1*(h_2_x + J_group_1_zz*inv_root_1);
+        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = R(0.5)*d_c_yy;
+        const real Q_t_2 = Q_t*axis_x_y - axis_x_x*d_G_yx;
+        const real Q_t_3 = Q_t*axis_x_x + axis_x_y*d_G_yx;
+        const real Q_t_4 = 2*Q_t_2*axis_x_y;
+        const real Q_t_5 = Q_t_2*axis_x_x + Q_t_3*axis_x_y;
+        const real Q_t_6 = 2*Q_t_3*axis_x_x;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_4 : Q_t_4;  /* total_rpr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_5 : Q_t_5;  /* total_rpr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_6 : Q_t_6;  /* total_rpr_yy */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void M_place_rpr(size_t w, const M_results_rpr *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rpr_xx = s->sum[0][k];
+        const real total_rpr_xy = s->sum[1][k];
+        const real total_rpr_yy = s->sum[2][k];
+        const real m_star = m->m_star;
+        /* (M1) translational block of M */
+        const real M_tt_xx = m_star - total_rpr_xx;
+        const real M_tt_yy = m_star - total_rpr_yy;
+        M[0*w + k] = M_tt_xx;
+        M[1*w + k] = total_rpr_xy;
+        M[2*w + k] = total_rpr_xy;
+        M[3*w + k] = M_tt_yy;
+    }
+}
+
+INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+{
+    M_values values, *const s = &values;
+    M_results_rpr results_rpr;
+    M_before(w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        M_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            M_place_rpr(w, &results_rpr, leg, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            M_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            M_place_rpr(w, &results_rpr, 0, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    M_after(m, w, s, M);
+}
+
+INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
+{
+    real X_in[2*LANES], M_of[4*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    M_run(m, w, X, M_of, t);
+    check(4, w, M_of, t->overflow);
+    judge(t, w, code);
+    deliver(M_of, 4, w, code, M);
+}
+
+/* ---- Z: 70 mul, 44 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], sum[2][LANES];
+} Z_values;
+typedef struct {
+    real sum[2][8], singular[8];
+} Z_results_rpr;
+
+INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+    }
+}
+
+INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
+    states, size_t count, int add, Z_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real Sigma_1_xx = m->Sigma_1_xx[i];
+        const real Sigma_1_yy = m->Sigma_1_yy[i];
+        const real branch_1 = m->branch_1[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_group_1_x = m->h_group_1_x[i];
+        const real h_group_1_y = m->h_group_1_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
+        /* (rpr-A7) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_o = 2*S_dot_tip_x*inv_root_1*qd_1;
+        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real mu_1_o_z = h_group_1_y*(axis_x_x*gravity_x + axis_x_y*gravity_y) -
+            Sigma_1_xx*qdd_1_o - Sigma_1_yy*qdd_1_o - h_group_1_x*(axis_x_x*gravity_y -
+            axis_x_y*gravity_x);
+        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real phi_2_o_x = h_2_y*qdd_1_o - W_1_t*h_2_x;
+        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real c_o_y = W_1_t*h_2_y + h_2_x*qdd_1_o - inv_root_1*mu_1_o_z;
+        /* (rpr-N25) velocity and gravity terms of the leg force */
+        const real U_in_base_x = axis_x_x*phi_2_o_x + axis_x_y*c_o_y;
+        const real U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y;
+        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_rpr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_rpr_y */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void Z_place_rpr(size_t w, const Z_results_rpr *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void Z_after(const prepared *m, size_t w, const Z_values *s, real *Z)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rpr_x = s->sum[0][k];
+        const real total_rpr_y = s->sum[1][k];
+        const real Z_p_x = m->Z_p_x;
+        const real Z_p_y = m->Z_p_y;
+        /* (M3) translational part of Z */
+        const real Z_t_x = total_rpr_x - Z_p_x;
+        const real Z_t_y = total_rpr_y - Z_p_y;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+    }
+}
+
+INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+{
+    Z_values values, *const s = &values;
+    Z_results_rpr results_rpr;
+    Z_before(w, X, V, s);
+    if (w == 1) {  /* the legs side by side */
+        Z_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            Z_place_rpr(w, &results_rpr, leg, t);
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            Z_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            Z_place_rpr(w, &results_rpr, 0, t);
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    Z_after(m, w, s, Z);
+}
+
+INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], Z_of[2*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    Z_run(m, w, X, V, Z_of, t);
+    check(2, w, Z_of, t->overflow);
+    judge(t, w, code);
+    deliver(Z_of, 2, w, code, Z);
+}
+
+/* ---- H: 18 mul, 14 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES];
+} H_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} H_results_rpr;
+
+INLINE void H_before(size_t w, const real *X, H_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+    }
+}
+
+INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
+    states, size_t count, H_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real branch_1 = m->branch_1[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void H_place_rpr(size_t w, const H_results_rpr *o, size_t leg, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(2 + leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+{
+    H_values values, *const s = &values;
+    H_results_rpr results_rpr;
+    H_before(w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        H_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            H_place_rpr(w, &results_rpr, leg, leg, H, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 2; ++leg) {
+            H_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            H_place_rpr(w, &results_rpr, leg, 0, H, t);
+        }
+    }
+}
+
+INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
+{
+    real X_in[2*LANES], H_of[4*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    H_run(m, w, X, H_of, t);
+    check(4, w, H_of, t->overflow);
+    judge(t, w, code);
+    deliver(H_of, 4, w, code, H);
+}
+
+/* ---- required: 86 mul, 58 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES],
+        f_p_x[LANES], f_p_y[LANES], sum[2][LANES];
+} required_values;
+typedef struct {
+    real sum[2][8], entry[2][8], singular[8];
+} required_results_rpr;
+
+INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
+    *A, required_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real m_star = m->m_star;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        /* (E1) acceleration of the platform origin, less gravity */
+        const real a_t_x = t_ddot_x - gravity_x;
+        const real a_t_y = t_ddot_y - gravity_y;
+        /* (E2) inertia force of the platform less its weight */
+        const real f_p_x = a_t_x*m_star;
+        const real f_p_y = a_t_y*m_star;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->f_p_x[k] = f_p_x;
+        s->f_p_y[k] = f_p_y;
+    }
+}
+
+INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const required_values
+    *s, size_t states, size_t count, int add, required_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real J_group_1_zz = m->J_group_1_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real h_1_x = m->h_1_x[i];
+        const real h_1_y = m->h_1_y[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
+        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1 = inv_root_1*px_1;
+        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
+        /* (rpr-A2) acceleration of the connection point */
+        const real S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x;
+        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
+        const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
+        /* (rpr-A6) acceleration of joint 1 */
+        const real qdd_1 = inv_root_1*rel_y;
+        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
+        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
+        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
+        const real acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x;
+        const real acc_2_y = S_ddot_tip_y - g_r1_y;
+        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
+        const real mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y -
+            g_r1_y*h_1_x;
+        /* (rpr-N5) inertia force of link 2 from its turning about its reference point */
+        const real phi_2_x = -W_1_t*h_2_x - h_2_y*qdd_1;
+        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z;
+        const real c_in_base_x = -axis_x_x*phi_2_x - axis_x_y*c_y;
+        const real c_in_base_y = axis_x_x*c_y - axis_x_y*phi_2_x;
+        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_rpr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_rpr_y */
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void required_place_rpr(size_t w, const required_results_rpr *o, size_t leg, size_t first,
+    real *H, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(2 + leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void required_after(size_t w, const required_values *s, real *required)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real f_p_x = s->f_p_x[k];
+        const real f_p_y = s->f_p_y[k];
+        const real total_rpr_x = s->sum[0][k];
+        const real total_rpr_y = s->sum[1][k];
+        /* (E3) force that actuators and external wrench must give */
+        const real R_t_x = f_p_x - total_rpr_x;
+        const real R_t_y = f_p_y - total_rpr_y;
+        required[0*w + k] = R_t_x;
+        required[1*w + k] = R_t_y;
+    }
+}
+
+INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+    real *required, real *H, verdict *t)
+{
+    required_values values, *const s = &values;
+    required_results_rpr results_rpr;
+    required_before(m, w, X, V, A, s);
+    if (w == 1) {  /* the legs side by side */
+        required_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            required_place_rpr(w, &results_rpr, leg, leg, H, t);
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            required_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            required_place_rpr(w, &results_rpr, leg, 0, H, t);
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    required_after(w, s, required);
+}
+
+/* ---- inverse_kinematics: 18 mul, 14 add, 2 div, 2 sqrt, 2 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES];
+} inverse_kinematics_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} inverse_kinematics_results_rpr;
+
+INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+    }
+}
+
+INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t legs, const
+    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real branch_1 = m->branch_1[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        /* (rpr-K9) displacement of joint 1 */
+        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
+        o->entry[0][k] = q_1;
+        o->entry[1][k] = root_1;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void inverse_kinematics_place_rpr(size_t w, const inverse_kinematics_results_rpr *o, size_t
+    leg, size_t first, real *q, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        q[(2*leg)*w + k] = o->entry[0][first + k];
+        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
+    *t)
+{
+    inverse_kinematics_values values, *const s = &values;
+    inverse_kinematics_results_rpr results_rpr;
+    inverse_kinematics_before(w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        inverse_kinematics_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            inverse_kinematics_place_rpr(w, &results_rpr, leg, leg, q, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 2; ++leg) {
+            inverse_kinematics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            inverse_kinematics_place_rpr(w, &results_rpr, leg, 0, q, t);
+        }
+    }
+}
+
+INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
+{
+    real X_in[2*LANES], q_of[4*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    inverse_kinematics_run(m, w, X, q_of, t);
+    check(4, w, q_of, t->overflow);
+    judge(t, w, code);
+    deliver(q_of, 4, w, code, q);
+}
+
+/* ---- joint_rates: 28 mul, 18 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES];
+} joint_rates_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} joint_rates_results_rpr;
+
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+    }
+}
+
+INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, const
+    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real branch_1 = m->branch_1[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
+        o->entry[0][k] = qd_1;
+        o->entry[1][k] = S_dot_tip_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void joint_rates_place_rpr(size_t w, const joint_rates_results_rpr *o, size_t leg, size_t
+    first, real *qd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qd[(2*leg)*w + k] = o->entry[0][first + k];
+        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+    verdict *t)
+{
+    joint_rates_values values, *const s = &values;
+    joint_rates_results_rpr results_rpr;
+    joint_rates_before(w, X, V, s);
+    if (w == 1) {  /* the legs side by side */
+        joint_rates_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            joint_rates_place_rpr(w, &results_rpr, leg, leg, qd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 2; ++leg) {
+            joint_rates_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            joint_rates_place_rpr(w, &results_rpr, leg, 0, qd, t);
+        }
+    }
+}
+
+INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *rates, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], qd_of[4*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    joint_rates_run(m, w, X, V, qd_of, t);
+    check(4, w, qd_of, t->overflow);
+    judge(t, w, code);
+    deliver(qd_of, 4, w, code, rates);
+}
+
+/* ---- joint_accelerations: 46 mul, 26 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
+} joint_accelerations_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} joint_accelerations_results_rpr;
+
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
+    joint_accelerations_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+    }
+}
+
+INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t legs, const
+    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr
+    *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real branch_1 = m->branch_1[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
+        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
+        const real rel_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y + qd_1*qd_1*root_1;
+        const real rel_y = axis_x_x*t_ddot_y - 2*S_dot_tip_x*qd_1 - axis_x_y*t_ddot_x;
+        /* (rpr-A6) acceleration of joint 1 */
+        const real qdd_1 = inv_root_1*rel_y;
+        o->entry[0][k] = qdd_1;
+        o->entry[1][k] = rel_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void joint_accelerations_place_rpr(size_t w, const joint_accelerations_results_rpr *o,
+    size_t leg, size_t first, real *qdd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qdd[(2*leg)*w + k] = o->entry[0][first + k];
+        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd, verdict *t)
+{
+    joint_accelerations_values values, *const s = &values;
+    joint_accelerations_results_rpr results_rpr;
+    joint_accelerations_before(w, X, V, A, s);
+    if (w == 1) {  /* the legs side by side */
+        joint_accelerations_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            joint_accelerations_place_rpr(w, &results_rpr, leg, leg, qdd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 2; ++leg) {
+            joint_accelerations_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            joint_accelerations_place_rpr(w, &results_rpr, leg, 0, qdd, t);
+        }
+    }
+}
+
+INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *accelerations, int *code)
+{
+    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd_of[4*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    A = take(2, w, A, A_in, t);
+    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
+    check(4, w, qdd_of, t->overflow);
+    judge(t, w, code);
+    deliver(qdd_of, 4, w, code, accelerations);
+}
+
+/* ---- legs: 88 mul, 54 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_dot_x[LANES], t_dot_y[LANES], t_ddot_x[LANES], t_ddot_y[LANES];
+} legs_values;
+typedef struct {
+    real entry[4][8], singular[8];
+} legs_results_rpr;
+
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+    }
+}
+
+INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
+    states, size_t count, legs_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real J_group_1_zz = m->J_group_1_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real h_1_x = m->h_1_x[i];
+        const real h_1_y = m->h_1_y[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_link2_mass = m->rpr_link2_mass[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        const real axis_x_x = S_x*inv_root_1;
+        const real axis_x_y = S_y*inv_root_1;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_tip_x = axis_x_x*t_dot_x + axis_x_y*t_dot_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1 = inv_root_1*(axis_x_x*t_dot_y - axis_x_y*t_dot_x);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_t = qd_1*qd_1;
+        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1 = inv_root_1*px_1;
+        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
+        /* (rpr-A2) acceleration of the connection point */
+        const real S_ddot_tip_y = axis_x_x*t_ddot_y - axis_x_y*t_ddot_x;
+        /* (rpr-A4) acceleration of the connection point left to the joint accelerations */
+        const real rel_y = S_ddot_tip_y - 2*S_dot_tip_x*qd_1;
+        /* (rpr-A6) acceleration of joint 1 */
+        const real qdd_1 = inv_root_1*rel_y;
+        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
+        const real g_r1_x = c_1*g_r0_x + g_r0_y*s_1;
+        const real g_r1_y = c_1*g_r0_y - g_r0_x*s_1;
+        const real acc_2_x = axis_x_x*t_ddot_x + axis_x_y*t_ddot_y - g_r1_x;
+        const real acc_2_y = S_ddot_tip_y - g_r1_y;
+        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
+        const real mu_1_z = J_group_1_zz*qdd_1 + acc_2_y*h_2_x + g_r1_x*h_1_y - acc_2_x*h_2_y -
+            g_r1_y*h_1_x;
+        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_y = W_1_t*h_2_y - h_2_x*qdd_1 - inv_root_1*mu_1_z;
+        /* (rpr-N26) leg force on the platform without actuation, the last link's mass included */
+        const real c_true_x = W_1_t*h_2_x + h_2_y*qdd_1 - acc_2_x*rpr_link2_mass;
+        const real c_true_y = c_y - acc_2_y*rpr_link2_mass;
+        const real c_true_in_base_x = axis_x_x*c_true_x - axis_x_y*c_true_y;
+        const real c_true_in_base_y = axis_x_x*c_true_y + axis_x_y*c_true_x;
+        o->entry[0][k] = c_true_in_base_x;
+        o->entry[1][k] = c_true_in_base_y;
+        o->entry[2][k] = axis_x_x;
+        o->entry[3][k] = axis_x_y;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void legs_place_rpr(size_t w, const legs_results_rpr *o, size_t leg, size_t first, real
+    *leg_force, real *drive, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
+        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
+        drive[(3*leg)*w + k] = o->entry[2][first + k];
+        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+    real *leg_force, real *drive, verdict *t)
+{
+    legs_values values, *const s = &values;
+    legs_results_rpr results_rpr;
+    clear(leg_force, 6*w);
+    clear(drive, 6*w);
+    legs_before(w, X, V, A, s);
+    if (w == 1) {  /* the legs side by side */
+        legs_legs_rpr(m, 0, 1, s, 0, 2, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            legs_place_rpr(w, &results_rpr, leg, leg, leg_force, drive, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 2; ++leg) {
+            legs_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            legs_place_rpr(w, &results_rpr, leg, 0, leg_force, drive, t);
+        }
+    }
+}
+
+/* ---- potential: 46 mul, 38 add, 2 div, 2 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], potential_t[LANES], sum[1][LANES];
+} potential_values;
+typedef struct {
+    real sum[1][8], singular[8];
+} potential_results_rpr;
+
+INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real m_star = m->m_star;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        /* (V1) potential energy */
+        const real potential_t = gravity_x*(h_star_x + m_star*t_x) + gravity_y*(h_star_y +
+            m_star*t_y);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->potential_t[k] = potential_t;
+    }
+}
+
+INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const potential_values
+    *s, size_t states, size_t count, int add, potential_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real b_r0_x = m->b_r0_x[i];
+        const real b_r0_y = m->b_r0_y[i];
+        const real branch_1 = m->branch_1[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real h_1_x = m->h_1_x[i];
+        const real h_1_y = m->h_1_y[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_link1_mass = m->rpr_link1_mass[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_x = rpr_platform_point_x + t_x - rpr_base_point_x;
+        const real S_y = rpr_platform_point_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1 = 1/root_1;
+        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1 = inv_root_1*px_1;
+        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
+        /* (V1) potential energy */
+        const real potential_t_2 = (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x +
+            rpr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) + (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y +
+            rpr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1));
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rpr */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+    }
+}
+
+INLINE void potential_place_rpr(size_t w, const potential_results_rpr *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real potential_t = s->potential_t[k];
+        const real total_rpr = s->sum[0][k];
+        /* (V1) potential energy */
+        const real potential_ = -potential_t - total_rpr;
+        potential[0*w + k] = potential_;
+    }
+}
+
+INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+{
+    potential_values values, *const s = &values;
+    potential_results_rpr results_rpr;
+    potential_before(m, w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        potential_legs_rpr(m, 0, 1, s, 0, 2, 0, &results_rpr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            potential_place_rpr(w, &results_rpr, leg, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            potential_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            potential_place_rpr(w, &results_rpr, 0, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    potential_after(w, s, potential);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -2147,16 +2222,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1};  /* on which drives act */
     enum { N = 2, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], wrench_in[2*LANES];
     real force[2*LANES], H[4*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    check_input(A, 2, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    A = take(2, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 2, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(2, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -2167,7 +2242,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 2, w, code, tau);
 }
@@ -2177,26 +2252,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 2, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[2*LANES], V_in[2*LANES], tau_in[2*LANES], wrench_in[2*LANES];
     real M[4*LANES], Z[2*LANES], H[4*LANES];
     real force[2*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    check_input(tau, 2, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    tau = take(2, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 2; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 2; ++j) {
-                sum += H[(i*2 + j)*w + k]*tau[2*k + j];
+                sum += H[(i*2 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 2, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(2, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 2; ++i) {
@@ -2208,7 +2283,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 2, w, code, A);
 }
@@ -2218,14 +2293,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int fivebar_prismatic_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 2);
+    const int code = all_finite(A, 2) ? FIVEBAR_PRISMATIC_OK : FIVEBAR_PRISMATIC_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 2; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? FIVEBAR_PRISMATIC_OK : FIVEBAR_PRISMATIC_INVALID;
+    deliver(A, 2, 1, &code, completed);
+    return code;
 }
 
 int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -2236,7 +2309,7 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
     verdict values, *const t = &values;
     int code = fivebar_prismatic_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != FIVEBAR_PRISMATIC_OK) {
-        deliver(leg_force, 6, 1, &code, forces);
+        refuse(6, forces);
         return code;
     }
     start(1, t);
@@ -2246,7 +2319,7 @@ int fivebar_prismatic_leg_reactions(const prepared *m, const real *X, const real
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 6, 1, t);
+    check(6, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 6, 1, &code, forces);
     return code;
@@ -2258,8 +2331,8 @@ int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, re
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 2, 1, t);
-    check_input(V, 2, 1, t);
+    check(2, 1, X, t->invalid);
+    check(2, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 2; ++i) {
@@ -2267,7 +2340,7 @@ int fivebar_prismatic_energy(const prepared *m, const real *X, const real *V, re
             energies[0] += V[i]*M[i*2 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

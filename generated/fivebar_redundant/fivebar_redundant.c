@@ -11,13 +11,16 @@ typedef fivebar_redundant_real real;
 typedef fivebar_redundant_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? FIVEBAR_REDUNDANT_INVALID
+            : t->diverged[k] > 0 ? FIVEBAR_REDUNDANT_NOT_CONVERGED
             : t->unreachable[k] > 0 ? FIVEBAR_REDUNDANT_UNREACHABLE
             : t->singular[k] > 0 ? FIVEBAR_REDUNDANT_SINGULAR
-            : t->diverged[k] > 0 ? FIVEBAR_REDUNDANT_NOT_CONVERGED
             : t->overflow[k] > 0 ? FIVEBAR_REDUNDANT_INVALID : FIVEBAR_REDUNDANT_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == FIVEBAR_REDUNDANT_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != FIVEBAR_REDUNDANT_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -640,6 +660,320 @@ int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_re
     return FIVEBAR_REDUNDANT_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 2; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 3  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[2][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 2; ++j) {
+            a[i*3 + j] = h[j*n + i];
+        }
+        a[i*3 + 2] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    for (size_t i = 0; i < 2; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 216 mul, 139 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
@@ -656,10 +990,10 @@ typedef struct {
 INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -674,7 +1008,7 @@ INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_val
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rrr *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -843,18 +1177,18 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             + axis_y_rrr_axes2_in_base_y*w_2_rrr_t;
         const real w_2_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x
             - axis_y_rrr_axes2_in_base_x*w_2_rrr_t;
-        o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[4][k] = U_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[4][k] = add ? o->sum[4][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = w_2_rrr_in_base_x;
         o->entry[3][k] = w_2_rrr_in_base_y;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -872,7 +1206,7 @@ INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t f
 }
 
 INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rrr2 *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1037,16 +1371,16 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         /* (rrr2-V5) reciprocal vector 1 */
         const real w_1_rrr2_t = axis_y_rrr2_axes2_in_base_y*inv_r_1_rrr2_r0_y;
         const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
-        o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
-        o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
-        o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
-        o->sum[3][k] = U_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[4][k] = U_rrr2_in_base_y;  /* total_rrr2_y */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr2_t_5 : Q_rrr2_t_5;  /* total_rrr2_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr2_t_6 : Q_rrr2_t_6;  /* total_rrr2_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr2_t_7 : Q_rrr2_t_7;  /* total_rrr2_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + U_rrr2_in_base_x : U_rrr2_in_base_x;  /* total_rrr2_x */
+        o->sum[4][k] = add ? o->sum[4][k] + U_rrr2_in_base_y : U_rrr2_in_base_y;  /* total_rrr2_y */
         o->entry[0][k] = -w_1_rrr2_t;
         o->entry[1][k] = w_1_rrr2_t_2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -1102,40 +1436,46 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_results_rrr2 results_rrr2;
     dynamics_before(w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        dynamics_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             dynamics_place_rrr(w, &results_rrr, leg, H, t);
         }
         for (size_t n = 0; n < 5; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             dynamics_place_rrr(w, &results_rrr, 0, H, t);
-            for (size_t n = 0; n < 5; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 5; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        dynamics_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             dynamics_place_rrr2(w, &results_rrr2, leg, H, t);
         }
         for (size_t n = 0; n < 5; ++n) {
-            s->sum[5 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[5 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            dynamics_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             dynamics_place_rrr2(w, &results_rrr2, 0, H, t);
-            for (size_t n = 0; n < 5; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[5 + n][k] = leg ? s->sum[5 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 5; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[5 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -1145,15 +1485,15 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[4*LANES], Z_of[2*LANES], H_of[6*LANES];
+    real X_in[2*LANES], V_in[2*LANES], M_of[4*LANES], Z_of[2*LANES], H_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 4, w, t);
-    check_output(Z_of, 2, w, t);
-    check_output(H_of, 6, w, t);
+    check(4, w, M_of, t->overflow);
+    check(2, w, Z_of, t->overflow);
+    check(6, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 4, w, code, M);
     deliver(Z_of, 2, w, code, Z);
@@ -1174,8 +1514,8 @@ typedef struct {
 INLINE void M_before(size_t w, const real *X, M_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1185,7 +1525,7 @@ INLINE void M_before(size_t w, const real *X, M_values *s)
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rrr *o)
+    states, size_t count, int add, M_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1291,12 +1631,12 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real Q_rrr_t_6 = Q_rrr_t_3*axis_y_rrr_axes2_in_base_x +
             Q_rrr_t_4*axis_y_rrr_axes2_in_base_y;
         const real Q_rrr_t_7 = d_c_rrr_yy + 2*Q_rrr_t_4*axis_y_rrr_axes2_in_base_x;
-        o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -1309,7 +1649,7 @@ INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict 
 }
 
 INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rrr2 *o)
+    states, size_t count, int add, M_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1415,12 +1755,12 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const real Q_rrr2_t_6 = Q_rrr2_t_3*axis_y_rrr2_axes2_in_base_x +
             Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_y;
         const real Q_rrr2_t_7 = d_c_rrr2_yy + 2*Q_rrr2_t_4*axis_y_rrr2_axes2_in_base_x;
-        o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
-        o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
-        o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr2_t_5 : Q_rrr2_t_5;  /* total_rrr2_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr2_t_6 : Q_rrr2_t_6;  /* total_rrr2_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr2_t_7 : Q_rrr2_t_7;  /* total_rrr2_yy */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -1460,40 +1800,46 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_rrr2 results_rrr2;
     M_before(w, X, s);
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        M_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             M_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             M_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        M_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             M_place_rrr2(w, &results_rrr2, leg, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            M_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             M_place_rrr2(w, &results_rrr2, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -1502,12 +1848,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[4*LANES];
+    real X_in[2*LANES], M_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
+    X = take(2, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 4, w, t);
+    check(4, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 4, w, code, M);
 }
@@ -1526,10 +1872,10 @@ typedef struct {
 INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1544,7 +1890,7 @@ INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rrr *o)
+    states, size_t count, int add, Z_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1673,11 +2019,11 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
             axis_y_rrr_axes2_in_base_y*c_rrr_o_x;
         const real U_rrr_in_base_y = axis_y_rrr_axes2_in_base_x*c_rrr_o_x -
             axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
-        o->sum[0][k] = U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = U_rrr_in_base_y;  /* total_rrr_y */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -1690,7 +2036,7 @@ INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict 
 }
 
 INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rrr2 *o)
+    states, size_t count, int add, Z_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1820,11 +2166,11 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_x;
         const real U_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_x*c_rrr2_o_x -
             axis_y_rrr2_axes2_in_base_y*c_rrr2_o_y;
-        o->sum[0][k] = U_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[1][k] = U_rrr2_in_base_y;  /* total_rrr2_y */
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrr2_in_base_x : U_rrr2_in_base_x;  /* total_rrr2_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrr2_in_base_y : U_rrr2_in_base_y;  /* total_rrr2_y */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -1860,40 +2206,46 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_rrr2 results_rrr2;
     Z_before(w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        Z_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             Z_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 2; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             Z_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 2; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        Z_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             Z_place_rrr2(w, &results_rrr2, leg, t);
         }
         for (size_t n = 0; n < 2; ++n) {
-            s->sum[2 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[2 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            Z_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             Z_place_rrr2(w, &results_rrr2, 0, t);
-            for (size_t n = 0; n < 2; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[2 + n][k] = leg ? s->sum[2 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[2 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -1902,13 +2254,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[2*LANES];
+    real X_in[2*LANES], V_in[2*LANES], Z_of[2*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 2, w, t);
+    check(2, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 2, w, code, Z);
 }
@@ -1927,8 +2279,8 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2024,9 +2376,9 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = w_2_rrr_in_base_x;
         o->entry[3][k] = w_2_rrr_in_base_y;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2115,9 +2467,9 @@ INLINE void H_legs_rrr2(const prepared *m, size_t leg, size_t legs, const H_valu
             axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy);
         o->entry[0][k] = -w_1_rrr2_t;
         o->entry[1][k] = w_1_rrr2_t_2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -2163,12 +2515,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[6*LANES];
+    real X_in[2*LANES], H_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
+    X = take(2, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 6, w, t);
+    check(6, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 6, w, code, H);
 }
@@ -2189,12 +2541,12 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        const real A_0 = A[2*k + 0];
-        const real A_1 = A[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real m_star = m->m_star;
@@ -2225,7 +2577,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
 }
 
 INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rrr *o)
+    *s, size_t states, size_t count, int add, required_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2374,15 +2726,15 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_y*c_rrr_x;
         const real c_rrr_in_base_y = axis_y_rrr_axes2_in_base_y*c_rrr_y -
             axis_y_rrr_axes2_in_base_x*c_rrr_x;
-        o->sum[0][k] = c_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = c_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrr_in_base_x : c_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrr_in_base_y : c_rrr_in_base_y;  /* total_rrr_y */
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = w_2_rrr_in_base_x;
         o->entry[3][k] = w_2_rrr_in_base_y;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2400,7 +2752,7 @@ INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t f
 }
 
 INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rrr2 *o)
+    *s, size_t states, size_t count, int add, required_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2542,13 +2894,13 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrr2_axes2_in_base_y*c_rrr2_x;
         const real c_rrr2_in_base_y = axis_y_rrr2_axes2_in_base_y*c_rrr2_y -
             axis_y_rrr2_axes2_in_base_x*c_rrr2_x;
-        o->sum[0][k] = c_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[1][k] = c_rrr2_in_base_y;  /* total_rrr2_y */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrr2_in_base_x : c_rrr2_in_base_x;  /* total_rrr2_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrr2_in_base_y : c_rrr2_in_base_y;  /* total_rrr2_y */
         o->entry[0][k] = -w_1_rrr2_t;
         o->entry[1][k] = w_1_rrr2_t_2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -2588,40 +2940,46 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     required_results_rrr2 results_rrr2;
     required_before(m, w, X, V, A, s);
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        required_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             required_place_rrr(w, &results_rrr, leg, H, t);
         }
         for (size_t n = 0; n < 2; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             required_place_rrr(w, &results_rrr, 0, H, t);
-            for (size_t n = 0; n < 2; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        required_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             required_place_rrr2(w, &results_rrr2, leg, H, t);
         }
         for (size_t n = 0; n < 2; ++n) {
-            s->sum[2 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[2 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            required_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             required_place_rrr2(w, &results_rrr2, 0, H, t);
-            for (size_t n = 0; n < 2; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[2 + n][k] = leg ? s->sum[2 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 2; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[2 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -2642,8 +3000,8 @@ typedef struct {
 INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2711,8 +3069,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
             inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x);
         o->entry[0][k] = q_1_rrr;
         o->entry[1][k] = q_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2786,8 +3144,8 @@ INLINE void inverse_kinematics_legs_rrr2(const prepared *m, size_t leg, size_t l
             inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x);
         o->entry[0][k] = q_1_rrr2;
         o->entry[1][k] = q_2_rrr2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -2835,12 +3193,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[4*LANES];
+    real X_in[2*LANES], q_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
+    X = take(2, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 4, w, t);
+    check(4, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 4, w, code, q);
 }
@@ -2859,10 +3217,10 @@ typedef struct {
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2957,9 +3315,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
             r_1_rrr_t*s_2_rrr));
         o->entry[0][k] = -qd_1_rrr;
         o->entry[1][k] = qd_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3056,9 +3414,9 @@ INLINE void joint_rates_legs_rrr2(const prepared *m, size_t leg, size_t legs, co
             r_1_rrr2_t*s_2_rrr2));
         o->entry[0][k] = -qd_1_rrr2;
         o->entry[1][k] = qd_2_rrr2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3107,13 +3465,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[4*LANES];
+    real X_in[2*LANES], V_in[2*LANES], qd_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 4, w, t);
+    check(4, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 4, w, code, rates);
 }
@@ -3133,12 +3491,12 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        const real A_0 = A[2*k + 0];
-        const real A_1 = A[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3258,9 +3616,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
             qdd_1_rrr*r_1_rrr_r0_x);
         o->entry[0][k] = -qdd_1_rrr;
         o->entry[1][k] = qdd_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3376,9 +3734,9 @@ INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t 
             qdd_1_rrr2*r_1_rrr2_r0_x);
         o->entry[0][k] = -qdd_1_rrr2;
         o->entry[1][k] = qdd_2_rrr2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3427,14 +3785,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[4*LANES];
+    real X_in[2*LANES], V_in[2*LANES], A_in[2*LANES], qdd_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    check_input(A, 2, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    A = take(2, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 4, w, t);
+    check(4, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 4, w, code, accelerations);
 }
@@ -3453,12 +3811,12 @@ typedef struct {
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
-        const real V_0 = V[2*k + 0];
-        const real V_1 = V[2*k + 1];
-        const real A_0 = A[2*k + 0];
-        const real A_1 = A[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3637,9 +3995,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[3][k] = w_1_rrr_t_2;
         o->entry[4][k] = w_2_rrr_in_base_x;
         o->entry[5][k] = w_2_rrr_in_base_y;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3809,9 +4167,9 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
         o->entry[1][k] = c_true_rrr2_in_base_y;
         o->entry[2][k] = -w_1_rrr2_t;
         o->entry[3][k] = w_1_rrr2_t_2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3875,8 +4233,8 @@ typedef struct {
 INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[2*k + 0];
-        const real X_1 = X[2*k + 1];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
@@ -3895,7 +4253,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rrr *o)
+    *s, size_t states, size_t count, int add, potential_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3967,9 +4325,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
             b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)*(h_1_rrr_y +
             c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr - b_rrr_r0_x*s_1_rrr) -
             h_2_rrr_x*s_2_rrr);
-        o->sum[0][k] = potential_t_3;  /* total_rrr */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rrr */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3983,7 +4341,7 @@ INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t
 }
 
 INLINE void potential_legs_rrr2(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rrr2 *o)
+    *s, size_t states, size_t count, int add, potential_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4055,9 +4413,9 @@ INLINE void potential_legs_rrr2(const prepared *m, size_t leg, size_t legs, cons
             b_rrr2_r0_y*s_1_rrr2)) + (c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)*(h_1_rrr2_y +
             c_2_rrr2*h_2_rrr2_y + rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) -
             h_2_rrr2_x*s_2_rrr2);
-        o->sum[0][k] = potential_t_2;  /* total_rrr2 */
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rrr2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -4089,318 +4447,50 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr2 results_rrr2;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             potential_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        potential_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr2(w, &results_rrr2, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[1 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            potential_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             potential_place_rrr2(w, &results_rrr2, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[1 + n][k] = leg ? s->sum[1 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 2; ++e) {
-            force[e*w + k] += sign*wrench[2*k + e];
-        }
-    }
-}
-
-#define BIG 3  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[2][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 2; ++j) {
-            a[i*3 + j] = h[j*n + i];
-        }
-        a[i*3 + 2] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    for (size_t i = 0; i < 2; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -4415,17 +4505,17 @@ static int drive_forces(const prepared *m, const real *X, const real *V, const r
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 2, 1, t);
-    check_input(V, 2, 1, t);
-    check_input(A, 2, 1, t);
+    check(2, 1, X, t->invalid);
+    check(2, 1, V, t->invalid);
+    check(2, 1, A, t->invalid);
     required_run(m, 1, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 2, 1, t);
+        check(2, 1, wrench, t->invalid);
         add_wrench(wrench, -1, 1, force);
     }
     for (size_t j = 0; j < 3; ++j) {
         scale[j] = weights ? 1/root(weights[j]) : 1;
-        t->invalid[0] += unless(scale[j] > 0 && is_finite(scale[j]));
+        t->invalid[0] += UNLESS(scale[j] > 0 && is_finite(scale[j]));
     }
     for (size_t i = 0; i < 2; ++i) {
         for (size_t j = 0; j < 3; ++j) {
@@ -4440,11 +4530,11 @@ static int drive_forces(const prepared *m, const real *X, const real *V, const r
         }
         f[i] = row[3]/size;
     }
-    t->singular[0] += unless(least_norm(2, 3, h, f, found) > PIVOT);
+    t->singular[0] += UNLESS(least_norm(2, 3, h, f, found) > PIVOT);
     for (size_t j = 0; j < 3; ++j) {
         found[j] *= scale[j];
     }
-    check_output(found, 3, 1, t);
+    check(3, 1, found, t->overflow);
     judge(t, 1, &code);
     deliver(found, 3, 1, &code, tau);
     return code;
@@ -4490,26 +4580,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 2, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[2*LANES], V_in[2*LANES], tau_in[3*LANES], wrench_in[2*LANES];
     real M[4*LANES], Z[2*LANES], H[6*LANES];
     real force[2*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 2, w, t);
-    check_input(V, 2, w, t);
-    check_input(tau, 3, w, t);
+    X = take(2, w, X, X_in, t);
+    V = take(2, w, V, V_in, t);
+    tau = take(3, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 2; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[3*k + j];
+                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 2, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(2, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 2; ++i) {
@@ -4521,7 +4611,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 2, w, code, A);
 }
@@ -4531,14 +4621,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int fivebar_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 2);
+    const int code = all_finite(A, 2) ? FIVEBAR_REDUNDANT_OK : FIVEBAR_REDUNDANT_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 2; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? FIVEBAR_REDUNDANT_OK : FIVEBAR_REDUNDANT_INVALID;
+    deliver(A, 2, 1, &code, completed);
+    return code;
 }
 
 int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4549,7 +4637,7 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
     verdict values, *const t = &values;
     int code = fivebar_redundant_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != FIVEBAR_REDUNDANT_OK) {
-        deliver(leg_force, 6, 1, &code, forces);
+        refuse(6, forces);
         return code;
     }
     start(1, t);
@@ -4559,7 +4647,7 @@ int fivebar_redundant_leg_reactions(const prepared *m, const real *X, const real
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 6, 1, t);
+    check(6, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 6, 1, &code, forces);
     return code;
@@ -4571,8 +4659,8 @@ int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, re
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 2, 1, t);
-    check_input(V, 2, 1, t);
+    check(2, 1, X, t->invalid);
+    check(2, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 2; ++i) {
@@ -4580,7 +4668,7 @@ int fivebar_redundant_energy(const prepared *m, const real *X, const real *V, re
             energies[0] += V[i]*M[i*2 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

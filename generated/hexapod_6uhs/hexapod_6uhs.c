@@ -11,13 +11,16 @@ typedef hexapod_6uhs_real real;
 typedef hexapod_6uhs_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? HEXAPOD_6UHS_INVALID
+            : t->diverged[k] > 0 ? HEXAPOD_6UHS_NOT_CONVERGED
             : t->unreachable[k] > 0 ? HEXAPOD_6UHS_UNREACHABLE
             : t->singular[k] > 0 ? HEXAPOD_6UHS_SINGULAR
-            : t->diverged[k] > 0 ? HEXAPOD_6UHS_NOT_CONVERGED
             : t->overflow[k] > 0 ? HEXAPOD_6UHS_INVALID : HEXAPOD_6UHS_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == HEXAPOD_6UHS_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != HEXAPOD_6UHS_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -641,6 +661,333 @@ int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *
     return HEXAPOD_6UHS_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 6; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 6  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[6][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 6; ++j) {
+            a[i*7 + j] = h[j*n + i];
+        }
+        a[i*7 + 6] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step: the quaternion turns by its angular part. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    const real *const p = X + 3, *const v = step + 3;
+    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
+    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
+    const real a[3] = {f*v[0], f*v[1], f*v[2]};
+    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
+    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    for (size_t i = 0; i < 3; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
+    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
+    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
+    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
+    for (size_t i = 7; i < 7; ++i) {
+        to[i] = X[i] + part*step[i - 1];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 2547 mul, 1917 add, 24 div, 12 sqrt, 12 trig, every leg counted ---- */
@@ -661,19 +1008,19 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     dynamics_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         const real J_star_t_18 = m->J_star_t_18;
         const real J_star_t_20 = m->J_star_t_20;
         const real J_star_xx = m->J_star_xx;
@@ -807,12 +1154,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_uhs *o)
+    *s, size_t states, size_t count, int add, dynamics_results_uhs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1221,42 +1568,42 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real H_a_3_x = q_in_base_y*w_3_t_3 - q_in_base_z*w_3_t_2;
         const real H_a_3_y = q_in_base_z*w_3_t - q_in_base_x*w_3_t_3;
         const real H_a_3_z = q_in_base_x*w_3_t_2 - q_in_base_y*w_3_t;
-        o->sum[0][k] = Q_t_12;  /* total_uhs_xx */
-        o->sum[1][k] = Q_t_13;  /* total_uhs_xy */
-        o->sum[2][k] = Q_t_14;  /* total_uhs_xz */
-        o->sum[3][k] = Q_t_16;  /* total_uhs_yy */
-        o->sum[4][k] = Q_t_17;  /* total_uhs_yz */
-        o->sum[5][k] = Q_t_19;  /* total_uhs_zz */
-        o->sum[6][k] = M_ta_t_3;  /* total_uhs_xx_2 */
-        o->sum[7][k] = M_ta_t_4;  /* total_uhs_xy_2 */
-        o->sum[8][k] = M_ta_t_5;  /* total_uhs_xz_2 */
-        o->sum[9][k] = M_ta_t_6;  /* total_uhs_yx */
-        o->sum[10][k] = M_ta_t_8;  /* total_uhs_yy_2 */
-        o->sum[11][k] = M_ta_t_9;  /* total_uhs_yz_2 */
-        o->sum[12][k] = M_ta_t_10;  /* total_uhs_zx */
-        o->sum[13][k] = M_ta_t_11;  /* total_uhs_zy */
-        o->sum[14][k] = M_ta_t_12;  /* total_uhs_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_uhs_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_uhs_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_uhs_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_uhs_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_uhs_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_uhs_zz_3 */
-        o->sum[21][k] = U_in_base_x;  /* total_uhs_x */
-        o->sum[22][k] = U_in_base_y;  /* total_uhs_y */
-        o->sum[23][k] = U_in_base_z;  /* total_uhs_z */
-        o->sum[24][k] = Z_a_t;  /* total_uhs_x_2 */
-        o->sum[25][k] = Z_a_t_2;  /* total_uhs_y_2 */
-        o->sum[26][k] = Z_a_t_3;  /* total_uhs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_uhs_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_uhs_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_uhs_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_uhs_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_uhs_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_uhs_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_uhs_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_uhs_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_uhs_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_uhs_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_uhs_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_uhs_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_uhs_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_uhs_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_uhs_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_uhs_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_uhs_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_uhs_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_uhs_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_uhs_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_uhs_zz_3 */
+        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_uhs_x */
+        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_uhs_y */
+        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_uhs_z */
+        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_uhs_x_2 */
+        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_uhs_y_2 */
+        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_uhs_z_2 */
         o->entry[0][k] = w_3_t;
         o->entry[1][k] = w_3_t_2;
         o->entry[2][k] = w_3_t_3;
         o->entry[3][k] = H_a_3_x;
         o->entry[4][k] = H_a_3_y;
         o->entry[5][k] = H_a_3_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -1399,21 +1746,24 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_results_uhs results_uhs;
     dynamics_before(m, w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_uhs(m, 0, 1, s, 0, 6, &results_uhs);
+        dynamics_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             dynamics_place_uhs(w, &results_uhs, leg, leg, H, t);
         }
         for (size_t n = 0; n < 27; ++n) {
-            s->sum[n][0] = total(results_uhs.sum[n], 6);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_uhs.sum[n], 6);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         for (size_t leg = 0; leg < 6; ++leg) {
-            dynamics_legs_uhs(m, leg, 0, s, 1, w, &results_uhs);
+            dynamics_legs_uhs(m, leg, 0, s, 1, w, 1, &results_uhs);
             dynamics_place_uhs(w, &results_uhs, leg, 0, H, t);
-            for (size_t n = 0; n < 27; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_uhs.sum[n][k] : results_uhs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 27; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_uhs.sum[n][k];
             }
         }
     }
@@ -1423,15 +1773,15 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[36*LANES], Z_of[6*LANES], H_of[36*LANES];
+    real X_in[7*LANES], V_in[6*LANES], M_of[36*LANES], Z_of[6*LANES], H_of[36*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 36, w, t);
-    check_output(Z_of, 6, w, t);
-    check_output(H_of, 36, w, t);
+    check(36, w, M_of, t->overflow);
+    check(6, w, Z_of, t->overflow);
+    check(36, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 36, w, code, M);
     deliver(Z_of, 6, w, code, Z);
@@ -1453,13 +1803,13 @@ typedef struct {
 INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         const real J_star_t_18 = m->J_star_t_18;
         const real J_star_t_20 = m->J_star_t_20;
         const real J_star_xx = m->J_star_xx;
@@ -1540,12 +1890,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_12[k] = J_star_t_12;
         s->J_star_t_13[k] = J_star_t_13;
         s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void M_legs_uhs(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_uhs *o)
+    states, size_t count, int add, M_results_uhs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1775,30 +2125,30 @@ INLINE void M_legs_uhs(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
         const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
         const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = Q_t_12;  /* total_uhs_xx */
-        o->sum[1][k] = Q_t_13;  /* total_uhs_xy */
-        o->sum[2][k] = Q_t_14;  /* total_uhs_xz */
-        o->sum[3][k] = Q_t_16;  /* total_uhs_yy */
-        o->sum[4][k] = Q_t_17;  /* total_uhs_yz */
-        o->sum[5][k] = Q_t_19;  /* total_uhs_zz */
-        o->sum[6][k] = M_ta_t_3;  /* total_uhs_xx_2 */
-        o->sum[7][k] = M_ta_t_4;  /* total_uhs_xy_2 */
-        o->sum[8][k] = M_ta_t_5;  /* total_uhs_xz_2 */
-        o->sum[9][k] = M_ta_t_6;  /* total_uhs_yx */
-        o->sum[10][k] = M_ta_t_8;  /* total_uhs_yy_2 */
-        o->sum[11][k] = M_ta_t_9;  /* total_uhs_yz_2 */
-        o->sum[12][k] = M_ta_t_10;  /* total_uhs_zx */
-        o->sum[13][k] = M_ta_t_11;  /* total_uhs_zy */
-        o->sum[14][k] = M_ta_t_12;  /* total_uhs_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_uhs_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_uhs_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_uhs_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_uhs_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_uhs_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_uhs_zz_3 */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_uhs_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_uhs_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_uhs_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_uhs_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_uhs_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_uhs_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_uhs_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_uhs_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_uhs_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_uhs_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_uhs_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_uhs_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_uhs_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_uhs_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_uhs_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_uhs_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_uhs_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_uhs_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_uhs_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_uhs_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_uhs_zz_3 */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -1906,21 +2256,24 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_uhs results_uhs;
     M_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        M_legs_uhs(m, 0, 1, s, 0, 6, &results_uhs);
+        M_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             M_place_uhs(w, &results_uhs, leg, t);
         }
         for (size_t n = 0; n < 21; ++n) {
-            s->sum[n][0] = total(results_uhs.sum[n], 6);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_uhs.sum[n], 6);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         for (size_t leg = 0; leg < 6; ++leg) {
-            M_legs_uhs(m, leg, 0, s, 1, w, &results_uhs);
+            M_legs_uhs(m, leg, 0, s, 1, w, 1, &results_uhs);
             M_place_uhs(w, &results_uhs, 0, t);
-            for (size_t n = 0; n < 21; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_uhs.sum[n][k] : results_uhs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 21; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_uhs.sum[n][k];
             }
         }
     }
@@ -1929,12 +2282,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[36*LANES];
+    real X_in[7*LANES], M_of[36*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 36, w, t);
+    check(36, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 36, w, code, M);
 }
@@ -1955,19 +2308,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -2071,12 +2424,12 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_uhs *o)
+    states, size_t count, int add, Z_results_uhs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2367,15 +2720,15 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = U_in_base_x;  /* total_uhs_x */
-        o->sum[1][k] = U_in_base_y;  /* total_uhs_y */
-        o->sum[2][k] = U_in_base_z;  /* total_uhs_z */
-        o->sum[3][k] = Z_a_t;  /* total_uhs_x_2 */
-        o->sum[4][k] = Z_a_t_2;  /* total_uhs_y_2 */
-        o->sum[5][k] = Z_a_t_3;  /* total_uhs_z_2 */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_uhs_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_uhs_y */
+        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_uhs_z */
+        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_uhs_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_uhs_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_uhs_z_2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -2424,21 +2777,24 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_uhs results_uhs;
     Z_before(m, w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_uhs(m, 0, 1, s, 0, 6, &results_uhs);
+        Z_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             Z_place_uhs(w, &results_uhs, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_uhs.sum[n], 6);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_uhs.sum[n], 6);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         for (size_t leg = 0; leg < 6; ++leg) {
-            Z_legs_uhs(m, leg, 0, s, 1, w, &results_uhs);
+            Z_legs_uhs(m, leg, 0, s, 1, w, 1, &results_uhs);
             Z_place_uhs(w, &results_uhs, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_uhs.sum[n][k] : results_uhs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_uhs.sum[n][k];
             }
         }
     }
@@ -2447,13 +2803,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[6*LANES];
+    real X_in[7*LANES], V_in[6*LANES], Z_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 6, w, t);
+    check(6, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 6, w, code, Z);
 }
@@ -2470,13 +2826,13 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2516,7 +2872,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -2595,8 +2951,8 @@ INLINE void H_legs_uhs(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[3][k] = H_a_3_x;
         o->entry[4][k] = H_a_3_y;
         o->entry[5][k] = H_a_3_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
             TOLERANCE*size_);
     }
 }
@@ -2635,12 +2991,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[36*LANES];
+    real X_in[7*LANES], H_of[36*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 36, w, t);
+    check(36, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 36, w, code, H);
 }
@@ -2662,25 +3018,25 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -2811,12 +3167,12 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void required_legs_uhs(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_uhs *o)
+    *s, size_t states, size_t count, int add, required_results_uhs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3125,21 +3481,21 @@ INLINE void required_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
         const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
         const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = c_in_base_x;  /* total_uhs_x */
-        o->sum[1][k] = c_in_base_y;  /* total_uhs_y */
-        o->sum[2][k] = c_in_base_z;  /* total_uhs_z */
-        o->sum[3][k] = R_a_t;  /* total_uhs_x_2 */
-        o->sum[4][k] = R_a_t_2;  /* total_uhs_y_2 */
-        o->sum[5][k] = R_a_t_3;  /* total_uhs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_uhs_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_uhs_y */
+        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_uhs_z */
+        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_uhs_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_uhs_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_uhs_z_2 */
         o->entry[0][k] = w_3_t;
         o->entry[1][k] = w_3_t_2;
         o->entry[2][k] = w_3_t_3;
         o->entry[3][k] = H_a_3_x;
         o->entry[4][k] = H_a_3_y;
         o->entry[5][k] = H_a_3_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -3196,21 +3552,24 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     required_results_uhs results_uhs;
     required_before(m, w, X, V, A, s, t);
     if (w == 1) {  /* the legs side by side */
-        required_legs_uhs(m, 0, 1, s, 0, 6, &results_uhs);
+        required_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             required_place_uhs(w, &results_uhs, leg, leg, H, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_uhs.sum[n], 6);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_uhs.sum[n], 6);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         for (size_t leg = 0; leg < 6; ++leg) {
-            required_legs_uhs(m, leg, 0, s, 1, w, &results_uhs);
+            required_legs_uhs(m, leg, 0, s, 1, w, 1, &results_uhs);
             required_place_uhs(w, &results_uhs, leg, 0, H, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_uhs.sum[n][k] : results_uhs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_uhs.sum[n][k];
             }
         }
     }
@@ -3230,13 +3589,13 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3276,7 +3635,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3355,8 +3714,8 @@ INLINE void inverse_kinematics_legs_uhs(const prepared *m, size_t leg, size_t le
         o->entry[0][k] = q_1;
         o->entry[1][k] = q_2;
         o->entry[2][k] = -q_3;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
     }
 }
 
@@ -3392,12 +3751,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[18*LANES];
+    real X_in[7*LANES], q_of[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 18, w, t);
+    check(18, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 18, w, code, q);
 }
@@ -3416,19 +3775,19 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3481,7 +3840,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3597,9 +3956,9 @@ INLINE void joint_rates_legs_uhs(const prepared *m, size_t leg, size_t legs, con
         o->entry[0][k] = qd_1;
         o->entry[1][k] = qd_2;
         o->entry[2][k] = qd_3;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -3636,13 +3995,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[18*LANES];
+    real X_in[7*LANES], V_in[6*LANES], qd_of[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 18, w, t);
+    check(18, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 18, w, code, rates);
 }
@@ -3663,25 +4022,25 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3747,7 +4106,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3937,9 +4296,9 @@ INLINE void joint_accelerations_legs_uhs(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = -qdd_2;
         o->entry[2][k] = qdd_3;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -3976,14 +4335,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[18*LANES];
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(A, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    A = take(6, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 18, w, t);
+    check(18, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 18, w, code, accelerations);
 }
@@ -4004,25 +4363,25 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -4088,7 +4447,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -4405,9 +4764,9 @@ INLINE void legs_legs_uhs(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[3][k] = w_3_t;
         o->entry[4][k] = w_3_t_2;
         o->entry[5][k] = w_3_t_3;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(v_1_r0_y) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(v_1_r0_y) > TOLERANCE*size_);
     }
 }
 
@@ -4458,13 +4817,13 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -4516,12 +4875,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t[k] = potential_t;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void potential_legs_uhs(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_uhs *o)
+    *s, size_t states, size_t count, int add, potential_results_uhs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4620,9 +4979,9 @@ INLINE void potential_legs_uhs(const prepared *m, size_t leg, size_t legs, const
             uhs_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) + (-c_2*g_r0_z - g_r1_y*s_2)*(c_3_t*h_3_y +
             uhs_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2) - h_2_z - h_3_z*s_3) + (g_r0_z*s_2 -
             c_2*g_r1_y)*(h_2_x + h_3_x + uhs_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2));
-        o->sum[0][k] = potential_t_2;  /* total_uhs */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_uhs */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
     }
 }
 
@@ -4651,312 +5010,28 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_uhs results_uhs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_uhs(m, 0, 1, s, 0, 6, &results_uhs);
+        potential_legs_uhs(m, 0, 1, s, 0, 6, 0, &results_uhs);
         for (size_t leg = 0; leg < 6; ++leg) {
             potential_place_uhs(w, &results_uhs, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_uhs.sum[n], 6);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_uhs.sum[n], 6);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_uhs.sum, 0, sizeof results_uhs.sum);
         for (size_t leg = 0; leg < 6; ++leg) {
-            potential_legs_uhs(m, leg, 0, s, 1, w, &results_uhs);
+            potential_legs_uhs(m, leg, 0, s, 1, w, 1, &results_uhs);
             potential_place_uhs(w, &results_uhs, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_uhs.sum[n][k] : results_uhs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_uhs.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 6; ++e) {
-            force[e*w + k] += sign*wrench[6*k + e];
-        }
-    }
-}
-
-#define BIG 6  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[6][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            a[i*7 + j] = h[j*n + i];
-        }
-        a[i*7 + 6] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step: the quaternion turns by its angular part. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    const real *const p = X + 3, *const v = step + 3;
-    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
-    const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
-    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
-    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
-    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
-    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
-    for (size_t i = 7; i < 7; ++i) {
-        to[i] = X[i] + part*step[i - 1];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -4967,16 +5042,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2, 3, 4, 5};  /* on which drives act */
     enum { N = 6, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES];
     real force[6*LANES], H[36*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(A, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    A = take(6, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -4987,7 +5062,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 6, w, code, tau);
 }
@@ -4997,26 +5072,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 6, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[7*LANES], V_in[6*LANES], tau_in[6*LANES], wrench_in[6*LANES];
     real M[36*LANES], Z[6*LANES], H[36*LANES];
     real force[6*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(tau, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    tau = take(6, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 6; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 6; ++j) {
-                sum += H[(i*6 + j)*w + k]*tau[6*k + j];
+                sum += H[(i*6 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 6; ++i) {
@@ -5028,7 +5103,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 6, w, code, A);
 }
@@ -5038,14 +5113,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int hexapod_6uhs_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 6);
+    const int code = all_finite(A, 6) ? HEXAPOD_6UHS_OK : HEXAPOD_6UHS_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 6; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? HEXAPOD_6UHS_OK : HEXAPOD_6UHS_INVALID;
+    deliver(A, 6, 1, &code, completed);
+    return code;
 }
 
 int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5056,7 +5129,7 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
     verdict values, *const t = &values;
     int code = hexapod_6uhs_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != HEXAPOD_6UHS_OK) {
-        deliver(leg_force, 18, 1, &code, forces);
+        refuse(18, forces);
         return code;
     }
     start(1, t);
@@ -5066,7 +5139,7 @@ int hexapod_6uhs_leg_reactions(const prepared *m, const real *X, const real *V, 
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 18, 1, t);
+    check(18, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 18, 1, &code, forces);
     return code;
@@ -5078,8 +5151,8 @@ int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *k
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 7, 1, t);
-    check_input(V, 6, 1, t);
+    check(7, 1, X, t->invalid);
+    check(6, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 6; ++i) {
@@ -5087,7 +5160,7 @@ int hexapod_6uhs_energy(const prepared *m, const real *X, const real *V, real *k
             energies[0] += V[i]*M[i*6 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);
@@ -5102,11 +5175,6 @@ static int mismatch(const prepared *m, const real *q_actuated, const real *X, re
     int code = hexapod_6uhs_inverse_kinematics(m, X, q);
     for (size_t i = 0; i < 6; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
-    }
-    static const size_t turning[] = {0, 1, 2, 3, 4, 5};
-    for (size_t i = 0; i < 6; ++i) {
-        const real turn = 2*R(3.14159265358979323846264338327950288L);
-        gap[turning[i]] -= turn*whole(gap[turning[i]]/turn + R(0.5));
     }
     *size = largest(gap, 6);
     return code;

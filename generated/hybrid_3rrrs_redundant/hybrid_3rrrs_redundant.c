@@ -11,13 +11,16 @@ typedef hybrid_3rrrs_redundant_real real;
 typedef hybrid_3rrrs_redundant_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? HYBRID_3RRRS_REDUNDANT_INVALID
+            : t->diverged[k] > 0 ? HYBRID_3RRRS_REDUNDANT_NOT_CONVERGED
             : t->unreachable[k] > 0 ? HYBRID_3RRRS_REDUNDANT_UNREACHABLE
             : t->singular[k] > 0 ? HYBRID_3RRRS_REDUNDANT_SINGULAR
-            : t->diverged[k] > 0 ? HYBRID_3RRRS_REDUNDANT_NOT_CONVERGED
             : t->overflow[k] > 0 ? HYBRID_3RRRS_REDUNDANT_INVALID : HYBRID_3RRRS_REDUNDANT_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == HYBRID_3RRRS_REDUNDANT_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -1106,6 +1126,333 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     return HYBRID_3RRRS_REDUNDANT_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 6; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 7  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[7][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 7; ++j) {
+            a[i*8 + j] = h[j*n + i];
+        }
+        a[i*8 + 7] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step: the quaternion turns by its angular part. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    const real *const p = X + 3, *const v = step + 3;
+    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
+    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
+    const real a[3] = {f*v[0], f*v[1], f*v[2]};
+    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
+    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    for (size_t i = 0; i < 3; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
+    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
+    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
+    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
+    for (size_t i = 7; i < 8; ++i) {
+        to[i] = X[i] + part*step[i - 1];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 1547 mul, 1205 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
@@ -1129,19 +1476,19 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     dynamics_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
-        const real V_0 = V[7*k + 0];
-        const real V_1 = V[7*k + 1];
-        const real V_2 = V[7*k + 2];
-        const real V_3 = V[7*k + 3];
-        const real V_4 = V[7*k + 4];
-        const real V_5 = V[7*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         const real J_star_t_24 = m->J_star_t_24;
         const real J_star_t_26 = m->J_star_t_26;
         const real J_star_xx = m->J_star_xx;
@@ -1275,12 +1622,13 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, const real *X, const real *V, dynamics_results_rrrrs *o)
+INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
+    dynamics_values *s, size_t states, size_t count, int add, const real *X, const real *V,
+    dynamics_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1384,8 +1732,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
-        const real yd_2_rrrrs = V[7*j + 6];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        const real yd_2_rrrrs = V[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -2003,33 +2351,33 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
             q_rrrrs_in_base_z*w_3_rrrrs_t;
         const real H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t -
             q_rrrrs_in_base_x*w_3_rrrrs_t_2;
-        o->sum[0][k] = Q_rrrrs_t_12;  /* total_rrrrs_xx */
-        o->sum[1][k] = Q_rrrrs_t_13;  /* total_rrrrs_xy */
-        o->sum[2][k] = Q_rrrrs_t_14;  /* total_rrrrs_xz */
-        o->sum[3][k] = Q_rrrrs_t_16;  /* total_rrrrs_yy */
-        o->sum[4][k] = Q_rrrrs_t_17;  /* total_rrrrs_yz */
-        o->sum[5][k] = Q_rrrrs_t_19;  /* total_rrrrs_zz */
-        o->sum[6][k] = M_ta_t_3;  /* total_rrrrs_xx_2 */
-        o->sum[7][k] = M_ta_t_4;  /* total_rrrrs_xy_2 */
-        o->sum[8][k] = M_ta_t_5;  /* total_rrrrs_xz_2 */
-        o->sum[9][k] = M_ta_t_6;  /* total_rrrrs_yx */
-        o->sum[10][k] = M_ta_t_8;  /* total_rrrrs_yy_2 */
-        o->sum[11][k] = M_ta_t_9;  /* total_rrrrs_yz_2 */
-        o->sum[12][k] = M_ta_t_10;  /* total_rrrrs_zx */
-        o->sum[13][k] = M_ta_t_11;  /* total_rrrrs_zy */
-        o->sum[14][k] = M_ta_t_12;  /* total_rrrrs_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_rrrrs_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_rrrrs_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_rrrrs_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_rrrrs_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_rrrrs_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_rrrrs_zz_3 */
-        o->sum[21][k] = U_rrrrs_in_base_x;  /* total_rrrrs_x */
-        o->sum[22][k] = U_rrrrs_in_base_y;  /* total_rrrrs_y */
-        o->sum[23][k] = U_rrrrs_in_base_z;  /* total_rrrrs_z */
-        o->sum[24][k] = Z_a_t;  /* total_rrrrs_x_2 */
-        o->sum[25][k] = Z_a_t_2;  /* total_rrrrs_y_2 */
-        o->sum[26][k] = Z_a_t_3;  /* total_rrrrs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrrrs_t_12 : Q_rrrrs_t_12;  /* total_rrrrs_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrrrs_t_13 : Q_rrrrs_t_13;  /* total_rrrrs_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrrrs_t_14 : Q_rrrrs_t_14;  /* total_rrrrs_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_rrrrs_t_16 : Q_rrrrs_t_16;  /* total_rrrrs_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_rrrrs_t_17 : Q_rrrrs_t_17;  /* total_rrrrs_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_rrrrs_t_19 : Q_rrrrs_t_19;  /* total_rrrrs_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrrrs_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrrrs_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_rrrrs_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_rrrrs_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_rrrrs_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_rrrrs_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_rrrrs_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_rrrrs_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_rrrrs_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_rrrrs_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrrrs_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_rrrrs_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_rrrrs_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_rrrrs_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_rrrrs_zz_3 */
+        o->sum[21][k] = add ? o->sum[21][k] + U_rrrrs_in_base_x : U_rrrrs_in_base_x;  /* total_rrrrs_x */
+        o->sum[22][k] = add ? o->sum[22][k] + U_rrrrs_in_base_y : U_rrrrs_in_base_y;  /* total_rrrrs_y */
+        o->sum[23][k] = add ? o->sum[23][k] + U_rrrrs_in_base_z : U_rrrrs_in_base_z;  /* total_rrrrs_z */
+        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_rrrrs_x_2 */
+        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrrrs_y_2 */
+        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_rrrrs_z_2 */
         o->entry[0][k] = P_2_rrrrs_o;
         o->entry[1][k] = d_P_2_rrrrs_in_base_x;
         o->entry[2][k] = d_P_2_rrrrs_in_base_x;
@@ -2058,11 +2406,11 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         o->entry[25][k] = H_a_3_rrrrs_y;
         o->entry[26][k] = H_a_3_rrrrs_z;
         o->entry[27][k] = -d1_qdd_3_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -2104,7 +2452,7 @@ INLINE void dynamics_place_rrrrs(size_t w, const dynamics_results_rrrrs *o, size
 }
 
 INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rrrs *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2588,33 +2936,33 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3;
         const real H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t;
         const real H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2;
-        o->sum[0][k] = Q_rrrs_t_12;  /* total_rrrs_xx */
-        o->sum[1][k] = Q_rrrs_t_13;  /* total_rrrs_xy */
-        o->sum[2][k] = Q_rrrs_t_14;  /* total_rrrs_xz */
-        o->sum[3][k] = Q_rrrs_t_16;  /* total_rrrs_yy */
-        o->sum[4][k] = Q_rrrs_t_17;  /* total_rrrs_yz */
-        o->sum[5][k] = Q_rrrs_t_19;  /* total_rrrs_zz */
-        o->sum[6][k] = M_ta_t_15;  /* total_rrrs_xx_2 */
-        o->sum[7][k] = M_ta_t_16;  /* total_rrrs_xy_2 */
-        o->sum[8][k] = M_ta_t_17;  /* total_rrrs_xz_2 */
-        o->sum[9][k] = M_ta_t_18;  /* total_rrrs_yx */
-        o->sum[10][k] = M_ta_t_20;  /* total_rrrs_yy_2 */
-        o->sum[11][k] = M_ta_t_21;  /* total_rrrs_yz_2 */
-        o->sum[12][k] = M_ta_t_22;  /* total_rrrs_zx */
-        o->sum[13][k] = M_ta_t_23;  /* total_rrrs_zy */
-        o->sum[14][k] = M_ta_t_24;  /* total_rrrs_zz_2 */
-        o->sum[15][k] = M_aa_t_7;  /* total_rrrs_xx_3 */
-        o->sum[16][k] = M_aa_t_8;  /* total_rrrs_xy_3 */
-        o->sum[17][k] = M_aa_t_9;  /* total_rrrs_xz_3 */
-        o->sum[18][k] = M_aa_t_10;  /* total_rrrs_yy_3 */
-        o->sum[19][k] = M_aa_t_11;  /* total_rrrs_yz_3 */
-        o->sum[20][k] = M_aa_t_12;  /* total_rrrs_zz_3 */
-        o->sum[21][k] = U_rrrs_in_base_x;  /* total_rrrs_x */
-        o->sum[22][k] = U_rrrs_in_base_y;  /* total_rrrs_y */
-        o->sum[23][k] = U_rrrs_in_base_z;  /* total_rrrs_z */
-        o->sum[24][k] = Z_a_t_4;  /* total_rrrs_x_2 */
-        o->sum[25][k] = Z_a_t_5;  /* total_rrrs_y_2 */
-        o->sum[26][k] = Z_a_t_6;  /* total_rrrs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrrs_t_12 : Q_rrrs_t_12;  /* total_rrrs_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrrs_t_13 : Q_rrrs_t_13;  /* total_rrrs_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrrs_t_14 : Q_rrrs_t_14;  /* total_rrrs_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_rrrs_t_16 : Q_rrrs_t_16;  /* total_rrrs_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_rrrs_t_17 : Q_rrrs_t_17;  /* total_rrrs_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_rrrs_t_19 : Q_rrrs_t_19;  /* total_rrrs_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_15 : M_ta_t_15;  /* total_rrrs_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_16 : M_ta_t_16;  /* total_rrrs_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_17 : M_ta_t_17;  /* total_rrrs_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_18 : M_ta_t_18;  /* total_rrrs_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_20 : M_ta_t_20;  /* total_rrrs_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_21 : M_ta_t_21;  /* total_rrrs_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_22 : M_ta_t_22;  /* total_rrrs_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_23 : M_ta_t_23;  /* total_rrrs_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_24 : M_ta_t_24;  /* total_rrrs_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t_7 : M_aa_t_7;  /* total_rrrs_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_8 : M_aa_t_8;  /* total_rrrs_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_9 : M_aa_t_9;  /* total_rrrs_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_10 : M_aa_t_10;  /* total_rrrs_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_11 : M_aa_t_11;  /* total_rrrs_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_12 : M_aa_t_12;  /* total_rrrs_zz_3 */
+        o->sum[21][k] = add ? o->sum[21][k] + U_rrrs_in_base_x : U_rrrs_in_base_x;  /* total_rrrs_x */
+        o->sum[22][k] = add ? o->sum[22][k] + U_rrrs_in_base_y : U_rrrs_in_base_y;  /* total_rrrs_y */
+        o->sum[23][k] = add ? o->sum[23][k] + U_rrrs_in_base_z : U_rrrs_in_base_z;  /* total_rrrs_z */
+        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t_4 : Z_a_t_4;  /* total_rrrs_x_2 */
+        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_5 : Z_a_t_5;  /* total_rrrs_y_2 */
+        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_6 : Z_a_t_6;  /* total_rrrs_z_2 */
         o->entry[0][k] = w_1_rrrs_t_3;
         o->entry[1][k] = w_1_rrrs_t_4;
         o->entry[2][k] = w_1_rrrs_t_5;
@@ -2627,11 +2975,11 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -2816,40 +3164,46 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     clear(H, 49*w);
     dynamics_before(m, w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrrrs(m, 0, 1, s, 0, 1, X, V, &results_rrrrs);
+        dynamics_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, V, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             dynamics_place_rrrrs(w, &results_rrrrs, leg, M, Z, H, t);
         }
         for (size_t n = 0; n < 27; ++n) {
-            s->sum[n][0] = total(results_rrrrs.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrs.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrrrs(m, leg, 0, s, 1, w, X, V, &results_rrrrs);
+            dynamics_legs_rrrrs(m, w, leg, 0, s, 1, w, 1, X, V, &results_rrrrs);
             dynamics_place_rrrrs(w, &results_rrrrs, 0, M, Z, H, t);
-            for (size_t n = 0; n < 27; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrrrs.sum[n][k] : results_rrrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 27; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrs.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrrs(m, 0, 1, s, 0, 2, &results_rrrs);
+        dynamics_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             dynamics_place_rrrs(w, &results_rrrs, leg, leg, H, t);
         }
         for (size_t n = 0; n < 27; ++n) {
-            s->sum[27 + n][0] = total(results_rrrs.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[27 + n][k] = total(results_rrrs.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_legs_rrrs(m, leg, 0, s, 1, w, &results_rrrs);
+            dynamics_legs_rrrs(m, leg, 0, s, 1, w, 1, &results_rrrs);
             dynamics_place_rrrs(w, &results_rrrs, leg, 0, H, t);
-            for (size_t n = 0; n < 27; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[27 + n][k] = leg ? s->sum[27 + n][k] + results_rrrs.sum[n][k] : results_rrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 27; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[27 + n][k] = results_rrrs.sum[n][k];
             }
         }
     }
@@ -2859,15 +3213,15 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[49*LANES], Z_of[7*LANES], H_of[49*LANES];
+    real X_in[8*LANES], V_in[7*LANES], M_of[49*LANES], Z_of[7*LANES], H_of[49*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
-    check_input(V, 7, w, t);
+    X = take(8, w, X, X_in, t);
+    V = take(7, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 49, w, t);
-    check_output(Z_of, 7, w, t);
-    check_output(H_of, 49, w, t);
+    check(49, w, M_of, t->overflow);
+    check(7, w, Z_of, t->overflow);
+    check(49, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 49, w, code, M);
     deliver(Z_of, 7, w, code, Z);
@@ -2892,13 +3246,13 @@ typedef struct {
 INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         const real J_star_t_24 = m->J_star_t_24;
         const real J_star_t_26 = m->J_star_t_26;
         const real J_star_xx = m->J_star_xx;
@@ -2979,12 +3333,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_12[k] = J_star_t_12;
         s->J_star_t_13[k] = J_star_t_13;
         s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, const real *X, M_results_rrrrs *o)
+INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const M_values *s,
+    size_t states, size_t count, int add, const real *X, M_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3065,7 +3419,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -3381,27 +3735,27 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         const real d1_P_2_rrrrs_t = inv_r_3_rrrrs_r0_y*r_2_rrrrs_r1_y*(d1_G_rrrrs_t*r_3_rrrrs_r0_x
             - d1_Gamma_3_rrrrs) - d1_G_rrrrs_t*r_2_rrrrs_r1_x;
         const real d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t;
-        o->sum[0][k] = Q_rrrrs_t_12;  /* total_rrrrs_xx */
-        o->sum[1][k] = Q_rrrrs_t_13;  /* total_rrrrs_xy */
-        o->sum[2][k] = Q_rrrrs_t_14;  /* total_rrrrs_xz */
-        o->sum[3][k] = Q_rrrrs_t_16;  /* total_rrrrs_yy */
-        o->sum[4][k] = Q_rrrrs_t_17;  /* total_rrrrs_yz */
-        o->sum[5][k] = Q_rrrrs_t_19;  /* total_rrrrs_zz */
-        o->sum[6][k] = M_ta_t_3;  /* total_rrrrs_xx_2 */
-        o->sum[7][k] = M_ta_t_4;  /* total_rrrrs_xy_2 */
-        o->sum[8][k] = M_ta_t_5;  /* total_rrrrs_xz_2 */
-        o->sum[9][k] = M_ta_t_6;  /* total_rrrrs_yx */
-        o->sum[10][k] = M_ta_t_8;  /* total_rrrrs_yy_2 */
-        o->sum[11][k] = M_ta_t_9;  /* total_rrrrs_yz_2 */
-        o->sum[12][k] = M_ta_t_10;  /* total_rrrrs_zx */
-        o->sum[13][k] = M_ta_t_11;  /* total_rrrrs_zy */
-        o->sum[14][k] = M_ta_t_12;  /* total_rrrrs_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_rrrrs_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_rrrrs_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_rrrrs_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_rrrrs_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_rrrrs_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_rrrrs_zz_3 */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrrrs_t_12 : Q_rrrrs_t_12;  /* total_rrrrs_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrrrs_t_13 : Q_rrrrs_t_13;  /* total_rrrrs_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrrrs_t_14 : Q_rrrrs_t_14;  /* total_rrrrs_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_rrrrs_t_16 : Q_rrrrs_t_16;  /* total_rrrrs_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_rrrrs_t_17 : Q_rrrrs_t_17;  /* total_rrrrs_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_rrrrs_t_19 : Q_rrrrs_t_19;  /* total_rrrrs_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrrrs_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrrrs_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_rrrrs_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_rrrrs_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_rrrrs_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_rrrrs_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_rrrrs_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_rrrrs_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_rrrrs_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_rrrrs_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrrrs_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_rrrrs_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_rrrrs_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_rrrrs_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_rrrrs_zz_3 */
         o->entry[0][k] = d_P_2_rrrrs_in_base_x;
         o->entry[1][k] = d_P_2_rrrrs_in_base_x;
         o->entry[2][k] = d_P_2_rrrrs_in_base_y;
@@ -3415,11 +3769,11 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const M_val
         o->entry[10][k] = M_ya_2_rrrrs_z;
         o->entry[11][k] = M_ya_2_rrrrs_z;
         o->entry[12][k] = d1_P_2_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -3445,7 +3799,7 @@ INLINE void M_place_rrrrs(size_t w, const M_results_rrrrs *o, size_t first, real
 }
 
 INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rrrs *o)
+    states, size_t count, int add, M_results_rrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3712,32 +4066,32 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real M_aa_t_10 = M_ta_t_16*q_rrrs_in_base_z - M_ta_t_23*q_rrrs_in_base_x;
         const real M_aa_t_11 = M_ta_t_17*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_x;
         const real M_aa_t_12 = M_ta_t_17*q_rrrs_in_base_y - M_ta_t_21*q_rrrs_in_base_x;
-        o->sum[0][k] = Q_rrrs_t_12;  /* total_rrrs_xx */
-        o->sum[1][k] = Q_rrrs_t_13;  /* total_rrrs_xy */
-        o->sum[2][k] = Q_rrrs_t_14;  /* total_rrrs_xz */
-        o->sum[3][k] = Q_rrrs_t_16;  /* total_rrrs_yy */
-        o->sum[4][k] = Q_rrrs_t_17;  /* total_rrrs_yz */
-        o->sum[5][k] = Q_rrrs_t_19;  /* total_rrrs_zz */
-        o->sum[6][k] = M_ta_t_15;  /* total_rrrs_xx_2 */
-        o->sum[7][k] = M_ta_t_16;  /* total_rrrs_xy_2 */
-        o->sum[8][k] = M_ta_t_17;  /* total_rrrs_xz_2 */
-        o->sum[9][k] = M_ta_t_18;  /* total_rrrs_yx */
-        o->sum[10][k] = M_ta_t_20;  /* total_rrrs_yy_2 */
-        o->sum[11][k] = M_ta_t_21;  /* total_rrrs_yz_2 */
-        o->sum[12][k] = M_ta_t_22;  /* total_rrrs_zx */
-        o->sum[13][k] = M_ta_t_23;  /* total_rrrs_zy */
-        o->sum[14][k] = M_ta_t_24;  /* total_rrrs_zz_2 */
-        o->sum[15][k] = M_aa_t_7;  /* total_rrrs_xx_3 */
-        o->sum[16][k] = M_aa_t_8;  /* total_rrrs_xy_3 */
-        o->sum[17][k] = M_aa_t_9;  /* total_rrrs_xz_3 */
-        o->sum[18][k] = M_aa_t_10;  /* total_rrrs_yy_3 */
-        o->sum[19][k] = M_aa_t_11;  /* total_rrrs_yz_3 */
-        o->sum[20][k] = M_aa_t_12;  /* total_rrrs_zz_3 */
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrrs_t_12 : Q_rrrs_t_12;  /* total_rrrs_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrrs_t_13 : Q_rrrs_t_13;  /* total_rrrs_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrrs_t_14 : Q_rrrs_t_14;  /* total_rrrs_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_rrrs_t_16 : Q_rrrs_t_16;  /* total_rrrs_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_rrrs_t_17 : Q_rrrs_t_17;  /* total_rrrs_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_rrrs_t_19 : Q_rrrs_t_19;  /* total_rrrs_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_15 : M_ta_t_15;  /* total_rrrs_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_16 : M_ta_t_16;  /* total_rrrs_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_17 : M_ta_t_17;  /* total_rrrs_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_18 : M_ta_t_18;  /* total_rrrs_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_20 : M_ta_t_20;  /* total_rrrs_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_21 : M_ta_t_21;  /* total_rrrs_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_22 : M_ta_t_22;  /* total_rrrs_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_23 : M_ta_t_23;  /* total_rrrs_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_24 : M_ta_t_24;  /* total_rrrs_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t_7 : M_aa_t_7;  /* total_rrrs_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_8 : M_aa_t_8;  /* total_rrrs_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_9 : M_aa_t_9;  /* total_rrrs_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_10 : M_aa_t_10;  /* total_rrrs_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_11 : M_aa_t_11;  /* total_rrrs_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_12 : M_aa_t_12;  /* total_rrrs_zz_3 */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -3874,40 +4228,46 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_rrrs results_rrrs;
     M_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrrrs(m, 0, 1, s, 0, 1, X, &results_rrrrs);
+        M_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             M_place_rrrrs(w, &results_rrrrs, leg, M, t);
         }
         for (size_t n = 0; n < 21; ++n) {
-            s->sum[n][0] = total(results_rrrrs.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrs.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrrrs(m, leg, 0, s, 1, w, X, &results_rrrrs);
+            M_legs_rrrrs(m, w, leg, 0, s, 1, w, 1, X, &results_rrrrs);
             M_place_rrrrs(w, &results_rrrrs, 0, M, t);
-            for (size_t n = 0; n < 21; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrrrs.sum[n][k] : results_rrrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 21; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrs.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrrs(m, 0, 1, s, 0, 2, &results_rrrs);
+        M_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             M_place_rrrs(w, &results_rrrs, leg, t);
         }
         for (size_t n = 0; n < 21; ++n) {
-            s->sum[21 + n][0] = total(results_rrrs.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[21 + n][k] = total(results_rrrs.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            M_legs_rrrs(m, leg, 0, s, 1, w, &results_rrrs);
+            M_legs_rrrs(m, leg, 0, s, 1, w, 1, &results_rrrs);
             M_place_rrrs(w, &results_rrrs, 0, t);
-            for (size_t n = 0; n < 21; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[21 + n][k] = leg ? s->sum[21 + n][k] + results_rrrs.sum[n][k] : results_rrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 21; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[21 + n][k] = results_rrrs.sum[n][k];
             }
         }
     }
@@ -3916,12 +4276,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[49*LANES];
+    real X_in[8*LANES], M_of[49*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
+    X = take(8, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 49, w, t);
+    check(49, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 49, w, code, M);
 }
@@ -3945,19 +4305,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
-        const real V_0 = V[7*k + 0];
-        const real V_1 = V[7*k + 1];
-        const real V_2 = V[7*k + 2];
-        const real V_3 = V[7*k + 3];
-        const real V_4 = V[7*k + 4];
-        const real V_5 = V[7*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -4061,12 +4421,12 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, const real *X, const real *V, Z_results_rrrrs *o)
+INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const Z_values *s,
+    size_t states, size_t count, int add, const real *X, const real *V, Z_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4152,8 +4512,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
-        const real yd_2_rrrrs = V[7*j + 6];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        const real yd_2_rrrrs = V[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -4559,18 +4919,18 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const Z_val
            extra freedom of joint 2 */
         const real P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x;
         const real P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t;
-        o->sum[0][k] = U_rrrrs_in_base_x;  /* total_rrrrs_x */
-        o->sum[1][k] = U_rrrrs_in_base_y;  /* total_rrrrs_y */
-        o->sum[2][k] = U_rrrrs_in_base_z;  /* total_rrrrs_z */
-        o->sum[3][k] = Z_a_t;  /* total_rrrrs_x_2 */
-        o->sum[4][k] = Z_a_t_2;  /* total_rrrrs_y_2 */
-        o->sum[5][k] = Z_a_t_3;  /* total_rrrrs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrrrs_in_base_x : U_rrrrs_in_base_x;  /* total_rrrrs_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrrrs_in_base_y : U_rrrrs_in_base_y;  /* total_rrrrs_y */
+        o->sum[2][k] = add ? o->sum[2][k] + U_rrrrs_in_base_z : U_rrrrs_in_base_z;  /* total_rrrrs_z */
+        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_rrrrs_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrrrs_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_rrrrs_z_2 */
         o->entry[0][k] = P_2_rrrrs_o;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -4584,7 +4944,7 @@ INLINE void Z_place_rrrrs(size_t w, const Z_results_rrrrs *o, size_t first, real
 }
 
 INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rrrs *o)
+    states, size_t count, int add, Z_results_rrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4938,17 +5298,17 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
             U_rrrs_in_base_z*q_rrrs_in_base_x;
         const real Z_a_t_6 = U_rrrs_in_base_y*q_rrrs_in_base_x -
             U_rrrs_in_base_x*q_rrrs_in_base_y;
-        o->sum[0][k] = U_rrrs_in_base_x;  /* total_rrrs_x */
-        o->sum[1][k] = U_rrrs_in_base_y;  /* total_rrrs_y */
-        o->sum[2][k] = U_rrrs_in_base_z;  /* total_rrrs_z */
-        o->sum[3][k] = Z_a_t_4;  /* total_rrrs_x_2 */
-        o->sum[4][k] = Z_a_t_5;  /* total_rrrs_y_2 */
-        o->sum[5][k] = Z_a_t_6;  /* total_rrrs_z_2 */
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrrs_in_base_x : U_rrrs_in_base_x;  /* total_rrrs_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrrs_in_base_y : U_rrrs_in_base_y;  /* total_rrrs_y */
+        o->sum[2][k] = add ? o->sum[2][k] + U_rrrs_in_base_z : U_rrrs_in_base_z;  /* total_rrrs_z */
+        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t_4 : Z_a_t_4;  /* total_rrrs_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_5 : Z_a_t_5;  /* total_rrrs_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_6 : Z_a_t_6;  /* total_rrrs_z_2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -5005,40 +5365,46 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_rrrs results_rrrs;
     Z_before(m, w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrrrs(m, 0, 1, s, 0, 1, X, V, &results_rrrrs);
+        Z_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, V, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             Z_place_rrrrs(w, &results_rrrrs, leg, Z, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_rrrrs.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrs.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrrrs(m, leg, 0, s, 1, w, X, V, &results_rrrrs);
+            Z_legs_rrrrs(m, w, leg, 0, s, 1, w, 1, X, V, &results_rrrrs);
             Z_place_rrrrs(w, &results_rrrrs, 0, Z, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrrrs.sum[n][k] : results_rrrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrs.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrrs(m, 0, 1, s, 0, 2, &results_rrrs);
+        Z_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             Z_place_rrrs(w, &results_rrrs, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[6 + n][0] = total(results_rrrs.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[6 + n][k] = total(results_rrrs.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            Z_legs_rrrs(m, leg, 0, s, 1, w, &results_rrrs);
+            Z_legs_rrrs(m, leg, 0, s, 1, w, 1, &results_rrrs);
             Z_place_rrrs(w, &results_rrrs, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[6 + n][k] = leg ? s->sum[6 + n][k] + results_rrrs.sum[n][k] : results_rrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[6 + n][k] = results_rrrs.sum[n][k];
             }
         }
     }
@@ -5047,13 +5413,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[7*LANES];
+    real X_in[8*LANES], V_in[7*LANES], Z_of[7*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
-    check_input(V, 7, w, t);
+    X = take(8, w, X, X_in, t);
+    V = take(7, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 7, w, t);
+    check(7, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 7, w, code, Z);
 }
@@ -5073,13 +5439,13 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -5119,12 +5485,12 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void H_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, const real *X, H_results_rrrrs *o)
+INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const H_values *s,
+    size_t states, size_t count, const real *X, H_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -5169,7 +5535,7 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const H_val
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -5326,11 +5692,11 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const H_val
         o->entry[11][k] = H_a_3_rrrrs_y;
         o->entry[12][k] = H_a_3_rrrrs_z;
         o->entry[13][k] = -d1_qdd_3_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -5524,11 +5890,11 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -5561,13 +5927,13 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
     clear(H, 49*w);
     H_before(w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        H_legs_rrrrs(m, 0, 1, s, 0, 1, X, &results_rrrrs);
+        H_legs_rrrrs(m, w, 0, 1, s, 0, 1, X, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             H_place_rrrrs(w, &results_rrrrs, leg, H, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_rrrrs(m, leg, 0, s, 1, w, X, &results_rrrrs);
+            H_legs_rrrrs(m, w, leg, 0, s, 1, w, X, &results_rrrrs);
             H_place_rrrrs(w, &results_rrrrs, 0, H, t);
         }
     }
@@ -5586,12 +5952,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[49*LANES];
+    real X_in[8*LANES], H_of[49*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
+    X = take(8, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 49, w, t);
+    check(49, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 49, w, code, H);
 }
@@ -5616,25 +5982,25 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
-        const real V_0 = V[7*k + 0];
-        const real V_1 = V[7*k + 1];
-        const real V_2 = V[7*k + 2];
-        const real V_3 = V[7*k + 3];
-        const real V_4 = V[7*k + 4];
-        const real V_5 = V[7*k + 5];
-        const real A_0 = A[7*k + 0];
-        const real A_1 = A[7*k + 1];
-        const real A_2 = A[7*k + 2];
-        const real A_3 = A[7*k + 3];
-        const real A_4 = A[7*k + 4];
-        const real A_5 = A[7*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -5765,13 +6131,13 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, const real *X, const real *V, const real *A,
-    required_results_rrrrs *o)
+INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
+    required_values *s, size_t states, size_t count, int add, const real *X, const real *V, const
+    real *A, required_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -5866,9 +6232,9 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
-        const real yd_2_rrrrs = V[7*j + 6];
-        const real ydd_2_rrrrs = A[7*j + 6];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        const real yd_2_rrrrs = V[(6)*w + j];
+        const real ydd_2_rrrrs = A[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -6291,12 +6657,12 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrrs-N93) inertia and weight of the leg along the extra freedom of joint 2 */
         const real P_2_rrrrs_t = G_rrrrs_t_2*r_2_rrrrs_r1_y - G_rrrrs_t*r_2_rrrrs_r1_x;
         const real P_2_rrrrs = N_2_rrrrs_z + P_2_rrrrs_t;
-        o->sum[0][k] = c_rrrrs_in_base_x;  /* total_rrrrs_x */
-        o->sum[1][k] = c_rrrrs_in_base_y;  /* total_rrrrs_y */
-        o->sum[2][k] = c_rrrrs_in_base_z;  /* total_rrrrs_z */
-        o->sum[3][k] = R_a_t;  /* total_rrrrs_x_2 */
-        o->sum[4][k] = R_a_t_2;  /* total_rrrrs_y_2 */
-        o->sum[5][k] = R_a_t_3;  /* total_rrrrs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrrrs_in_base_x : c_rrrrs_in_base_x;  /* total_rrrrs_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrrrs_in_base_y : c_rrrrs_in_base_y;  /* total_rrrrs_y */
+        o->sum[2][k] = add ? o->sum[2][k] + c_rrrrs_in_base_z : c_rrrrs_in_base_z;  /* total_rrrrs_z */
+        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_rrrrs_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_rrrrs_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_rrrrs_z_2 */
         o->entry[0][k] = P_2_rrrrs;
         o->entry[1][k] = w_1_rrrrs_t_3;
         o->entry[2][k] = w_1_rrrrs_t_4;
@@ -6312,11 +6678,11 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t leg, size_t legs, cons
         o->entry[12][k] = H_a_3_rrrrs_y;
         o->entry[13][k] = H_a_3_rrrrs_z;
         o->entry[14][k] = -d1_qdd_3_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -6345,7 +6711,7 @@ INLINE void required_place_rrrrs(size_t w, const required_results_rrrrs *o, size
 }
 
 INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rrrs *o)
+    *s, size_t states, size_t count, int add, required_results_rrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -6724,12 +7090,12 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             c_rrrs_in_base_z*q_rrrs_in_base_x;
         const real R_a_t_6 = c_rrrs_in_base_y*q_rrrs_in_base_x -
             c_rrrs_in_base_x*q_rrrs_in_base_y;
-        o->sum[0][k] = c_rrrs_in_base_x;  /* total_rrrs_x */
-        o->sum[1][k] = c_rrrs_in_base_y;  /* total_rrrs_y */
-        o->sum[2][k] = c_rrrs_in_base_z;  /* total_rrrs_z */
-        o->sum[3][k] = R_a_t_4;  /* total_rrrs_x_2 */
-        o->sum[4][k] = R_a_t_5;  /* total_rrrs_y_2 */
-        o->sum[5][k] = R_a_t_6;  /* total_rrrs_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrrs_in_base_x : c_rrrs_in_base_x;  /* total_rrrs_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrrs_in_base_y : c_rrrs_in_base_y;  /* total_rrrs_y */
+        o->sum[2][k] = add ? o->sum[2][k] + c_rrrs_in_base_z : c_rrrs_in_base_z;  /* total_rrrs_z */
+        o->sum[3][k] = add ? o->sum[3][k] + R_a_t_4 : R_a_t_4;  /* total_rrrs_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_5 : R_a_t_5;  /* total_rrrs_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_6 : R_a_t_6;  /* total_rrrs_z_2 */
         o->entry[0][k] = w_1_rrrs_t_3;
         o->entry[1][k] = w_1_rrrs_t_4;
         o->entry[2][k] = w_1_rrrs_t_5;
@@ -6742,11 +7108,11 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -6818,40 +7184,46 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     clear(H, 49*w);
     required_before(m, w, X, V, A, s, t);
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrrrs(m, 0, 1, s, 0, 1, X, V, A, &results_rrrrs);
+        required_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, V, A, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             required_place_rrrrs(w, &results_rrrrs, leg, required, H, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_rrrrs.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrs.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrrrs(m, leg, 0, s, 1, w, X, V, A, &results_rrrrs);
+            required_legs_rrrrs(m, w, leg, 0, s, 1, w, 1, X, V, A, &results_rrrrs);
             required_place_rrrrs(w, &results_rrrrs, 0, required, H, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrrrs.sum[n][k] : results_rrrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrs.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrrs(m, 0, 1, s, 0, 2, &results_rrrs);
+        required_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             required_place_rrrs(w, &results_rrrs, leg, leg, H, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[6 + n][0] = total(results_rrrs.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[6 + n][k] = total(results_rrrs.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            required_legs_rrrs(m, leg, 0, s, 1, w, &results_rrrs);
+            required_legs_rrrs(m, leg, 0, s, 1, w, 1, &results_rrrs);
             required_place_rrrs(w, &results_rrrs, leg, 0, H, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[6 + n][k] = leg ? s->sum[6 + n][k] + results_rrrs.sum[n][k] : results_rrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[6 + n][k] = results_rrrs.sum[n][k];
             }
         }
     }
@@ -6874,13 +7246,13 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -6920,12 +7292,12 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, const real *X,
+INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs,
+    const inverse_kinematics_values *s, size_t states, size_t count, const real *X,
     inverse_kinematics_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
@@ -6970,7 +7342,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t leg, size_t 
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real S_rrrrs_x = t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z - rrrrs_base_point_x;
@@ -7038,9 +7410,9 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t leg, size_t 
         o->entry[1][k] = y_2_extra_rrrrs;
         o->entry[2][k] = q_3_rrrrs;
         o->entry[3][k] = q_4_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -7157,9 +7529,9 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = q_1_rrrs;
         o->entry[1][k] = q_2_rrrs;
         o->entry[2][k] = q_3_rrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -7183,13 +7555,13 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
     inverse_kinematics_results_rrrs results_rrrs;
     inverse_kinematics_before(w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rrrrs(m, 0, 1, s, 0, 1, X, &results_rrrrs);
+        inverse_kinematics_legs_rrrrs(m, w, 0, 1, s, 0, 1, X, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             inverse_kinematics_place_rrrrs(w, &results_rrrrs, leg, q, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_rrrrs(m, leg, 0, s, 1, w, X, &results_rrrrs);
+            inverse_kinematics_legs_rrrrs(m, w, leg, 0, s, 1, w, X, &results_rrrrs);
             inverse_kinematics_place_rrrrs(w, &results_rrrrs, 0, q, t);
         }
     }
@@ -7208,12 +7580,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[10*LANES];
+    real X_in[8*LANES], q_of[10*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
+    X = take(8, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 10, w, t);
+    check(10, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 10, w, code, q);
 }
@@ -7235,19 +7607,19 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
-        const real V_0 = V[7*k + 0];
-        const real V_1 = V[7*k + 1];
-        const real V_2 = V[7*k + 2];
-        const real V_3 = V[7*k + 3];
-        const real V_4 = V[7*k + 4];
-        const real V_5 = V[7*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -7300,11 +7672,11 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const
+INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
     joint_rates_values *s, size_t states, size_t count, const real *X, const real *V,
     joint_rates_results_rrrrs *o)
 {
@@ -7358,8 +7730,8 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t leg, size_t legs, c
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
-        const real yd_2_rrrrs = V[7*j + 6];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        const real yd_2_rrrrs = V[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -7514,11 +7886,11 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t leg, size_t legs, c
         o->entry[1][k] = yd_2_rrrrs;
         o->entry[2][k] = -qd_3_rrrrs;
         o->entry[3][k] = qd_4_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -7695,11 +8067,11 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
         o->entry[0][k] = qd_1_rrrs;
         o->entry[1][k] = -qd_2_rrrs;
         o->entry[2][k] = qd_3_rrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -7723,13 +8095,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
     joint_rates_results_rrrs results_rrrs;
     joint_rates_before(w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rrrrs(m, 0, 1, s, 0, 1, X, V, &results_rrrrs);
+        joint_rates_legs_rrrrs(m, w, 0, 1, s, 0, 1, X, V, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             joint_rates_place_rrrrs(w, &results_rrrrs, leg, qd, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_rrrrs(m, leg, 0, s, 1, w, X, V, &results_rrrrs);
+            joint_rates_legs_rrrrs(m, w, leg, 0, s, 1, w, X, V, &results_rrrrs);
             joint_rates_place_rrrrs(w, &results_rrrrs, 0, qd, t);
         }
     }
@@ -7749,13 +8121,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[10*LANES];
+    real X_in[8*LANES], V_in[7*LANES], qd_of[10*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
-    check_input(V, 7, w, t);
+    X = take(8, w, X, X_in, t);
+    V = take(7, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 10, w, t);
+    check(10, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 10, w, code, rates);
 }
@@ -7779,25 +8151,25 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
-        const real V_0 = V[7*k + 0];
-        const real V_1 = V[7*k + 1];
-        const real V_2 = V[7*k + 2];
-        const real V_3 = V[7*k + 3];
-        const real V_4 = V[7*k + 4];
-        const real V_5 = V[7*k + 5];
-        const real A_0 = A[7*k + 0];
-        const real A_1 = A[7*k + 1];
-        const real A_2 = A[7*k + 2];
-        const real A_3 = A[7*k + 3];
-        const real A_4 = A[7*k + 4];
-        const real A_5 = A[7*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -7863,13 +8235,13 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, const real *X, const real *V,
-    const real *A, joint_accelerations_results_rrrrs *o)
+INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs,
+    const joint_accelerations_values *s, size_t states, size_t count, const real *X, const real
+    *V, const real *A, joint_accelerations_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -7927,9 +8299,9 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
-        const real yd_2_rrrrs = V[7*j + 6];
-        const real ydd_2_rrrrs = A[7*j + 6];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        const real yd_2_rrrrs = V[(6)*w + j];
+        const real ydd_2_rrrrs = A[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -8173,11 +8545,11 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t leg, size_t
         o->entry[1][k] = ydd_2_rrrrs;
         o->entry[2][k] = -qdd_3_rrrrs;
         o->entry[3][k] = qdd_4_rrrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -8429,11 +8801,11 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
         o->entry[0][k] = qdd_1_rrrs;
         o->entry[1][k] = -qdd_2_rrrs;
         o->entry[2][k] = qdd_3_rrrs;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -8457,13 +8829,13 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
     joint_accelerations_results_rrrs results_rrrs;
     joint_accelerations_before(w, X, V, A, s, t);
     if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rrrrs(m, 0, 1, s, 0, 1, X, V, A, &results_rrrrs);
+        joint_accelerations_legs_rrrrs(m, w, 0, 1, s, 0, 1, X, V, A, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             joint_accelerations_place_rrrrs(w, &results_rrrrs, leg, qdd, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_rrrrs(m, leg, 0, s, 1, w, X, V, A, &results_rrrrs);
+            joint_accelerations_legs_rrrrs(m, w, leg, 0, s, 1, w, X, V, A, &results_rrrrs);
             joint_accelerations_place_rrrrs(w, &results_rrrrs, 0, qdd, t);
         }
     }
@@ -8483,14 +8855,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[10*LANES];
+    real X_in[8*LANES], V_in[7*LANES], A_in[7*LANES], qdd_of[10*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
-    check_input(V, 7, w, t);
-    check_input(A, 7, w, t);
+    X = take(8, w, X, X_in, t);
+    V = take(7, w, V, V_in, t);
+    A = take(7, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 10, w, t);
+    check(10, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 10, w, code, accelerations);
 }
@@ -8514,25 +8886,25 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
-        const real V_0 = V[7*k + 0];
-        const real V_1 = V[7*k + 1];
-        const real V_2 = V[7*k + 2];
-        const real V_3 = V[7*k + 3];
-        const real V_4 = V[7*k + 4];
-        const real V_5 = V[7*k + 5];
-        const real A_0 = A[7*k + 0];
-        const real A_1 = A[7*k + 1];
-        const real A_2 = A[7*k + 2];
-        const real A_3 = A[7*k + 3];
-        const real A_4 = A[7*k + 4];
-        const real A_5 = A[7*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -8598,13 +8970,13 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const legs_values *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, legs_results_rrrrs
-    *o)
+INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
+    legs_values *s, size_t states, size_t count, const real *X, const real *V, const real *A,
+    legs_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -8700,9 +9072,9 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
-        const real yd_2_rrrrs = V[7*j + 6];
-        const real ydd_2_rrrrs = A[7*j + 6];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        const real yd_2_rrrrs = V[(6)*w + j];
+        const real ydd_2_rrrrs = A[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z;
@@ -9105,11 +9477,11 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const le
         o->entry[6][k] = -w_3_rrrrs_t;
         o->entry[7][k] = -w_3_rrrrs_t_2;
         o->entry[8][k] = -w_3_rrrrs_t_3;
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
-            unless(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
-            unless(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -9510,11 +9882,11 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         o->entry[6][k] = -w_2_rrrs_t;
         o->entry[7][k] = -w_2_rrrs_t_2;
         o->entry[8][k] = -w_2_rrrs_t_3;
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
-            unless(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + unless(magnitude(-r_2_rrrs_r0_y)
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -9545,13 +9917,13 @@ INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, 
     clear(drive, 21*w);
     legs_before(w, X, V, A, s, t);
     if (w == 1) {  /* the legs side by side */
-        legs_legs_rrrrs(m, 0, 1, s, 0, 1, X, V, A, &results_rrrrs);
+        legs_legs_rrrrs(m, w, 0, 1, s, 0, 1, X, V, A, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             legs_place_rrrrs(w, &results_rrrrs, leg, leg_force, drive, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_rrrrs(m, leg, 0, s, 1, w, X, V, A, &results_rrrrs);
+            legs_legs_rrrrs(m, w, leg, 0, s, 1, w, X, V, A, &results_rrrrs);
             legs_place_rrrrs(w, &results_rrrrs, 0, leg_force, drive, t);
         }
     }
@@ -9585,13 +9957,13 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[8*k + 0];
-        const real X_1 = X[8*k + 1];
-        const real X_2 = X[8*k + 2];
-        const real X_3 = X[8*k + 3];
-        const real X_4 = X[8*k + 4];
-        const real X_5 = X[8*k + 5];
-        const real X_6 = X[8*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -9643,12 +10015,13 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_5[k] = potential_t_5;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
-INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, const
-    potential_values *s, size_t states, size_t count, const real *X, potential_results_rrrrs *o)
+INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
+    potential_values *s, size_t states, size_t count, int add, const real *X,
+    potential_results_rrrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -9715,7 +10088,7 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, con
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
-        const real y_2_extra_rrrrs = X[8*j + 7];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real S_rrrrs_x = t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
             R_xz*rrrrs_platform_point_z - rrrrs_base_point_x;
@@ -9804,10 +10177,10 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t leg, size_t legs, con
             g_r0_x*s_1_rrrrs) + (g_r0_y*s_1_rrrrs - c_1_rrrrs*g_r0_x)*(h_1_rrrrs_z + h_2_rrrrs_z +
             h_3_rrrrs_z + h_4_rrrrs_z + b_rrrrs_r1_x*rrrrs_link1_mass +
             b_rrrrs_r1_x*rrrrs_link2_mass + b_rrrrs_r1_x*rrrrs_link3_mass);
-        o->sum[0][k] = potential_t_10;  /* total_rrrrs */
-        o->singular[k] = unless(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
-            unless(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t);
-        o->unreachable[k] = unless(disc_3_rrrrs >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_10 : potential_t_10;  /* total_rrrrs */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
 }
 
@@ -9821,7 +10194,7 @@ INLINE void potential_place_rrrrs(size_t w, const potential_results_rrrrs *o, si
 }
 
 INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rrrs *o)
+    *s, size_t states, size_t count, int add, potential_results_rrrs *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -9951,10 +10324,10 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
             potential_t_2 - c_2_rrrs*h_2_rrrs_y - c_2_rrrs*h_3_rrrs_r0_y - h_2_rrrs_x*s_2_rrrs -
             h_3_rrrs_r0_x*s_2_rrrs) + (g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2)*(h_1_rrrs_z +
             h_2_rrrs_z + h_3_rrrs_z + b_rrrs_r1_x*rrrs_link1_mass + b_rrrs_r1_x*rrrs_link2_mass);
-        o->sum[0][k] = potential_t_7;  /* total_rrrs */
-        o->singular[k] = unless(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
-            unless(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t);
-        o->unreachable[k] = unless(disc_2_rrrs >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_7 : potential_t_7;  /* total_rrrs */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
 }
 
@@ -9986,331 +10359,50 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrrs results_rrrs;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrrrs(m, 0, 1, s, 0, 1, X, &results_rrrrs);
+        potential_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, &results_rrrrs);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrrrs(w, &results_rrrrs, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_rrrrs.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrs.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrrrs(m, leg, 0, s, 1, w, X, &results_rrrrs);
+            potential_legs_rrrrs(m, w, leg, 0, s, 1, w, 1, X, &results_rrrrs);
             potential_place_rrrrs(w, &results_rrrrs, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrrrs.sum[n][k] : results_rrrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrs.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrrs(m, 0, 1, s, 0, 2, &results_rrrs);
+        potential_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
         for (size_t leg = 0; leg < 2; ++leg) {
             potential_place_rrrs(w, &results_rrrs, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[1 + n][0] = total(results_rrrs.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrrs.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            potential_legs_rrrs(m, leg, 0, s, 1, w, &results_rrrs);
+            potential_legs_rrrs(m, leg, 0, s, 1, w, 1, &results_rrrs);
             potential_place_rrrs(w, &results_rrrs, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[1 + n][k] = leg ? s->sum[1 + n][k] + results_rrrs.sum[n][k] : results_rrrs.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrrs.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 6; ++e) {
-            force[e*w + k] += sign*wrench[6*k + e];
-        }
-    }
-}
-
-#define BIG 7  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[7][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 7; ++j) {
-            a[i*8 + j] = h[j*n + i];
-        }
-        a[i*8 + 7] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step: the quaternion turns by its angular part. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    const real *const p = X + 3, *const v = step + 3;
-    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
-    const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
-    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
-    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
-    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
-    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
-    for (size_t i = 7; i < 8; ++i) {
-        to[i] = X[i] + part*step[i - 1];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -10321,16 +10413,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2, 3, 4, 5, 6};  /* on which drives act */
     enum { N = 7, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[8*LANES], V_in[7*LANES], A_in[7*LANES], wrench_in[6*LANES];
     real force[7*LANES], H[49*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
-    check_input(V, 7, w, t);
-    check_input(A, 7, w, t);
+    X = take(8, w, X, X_in, t);
+    V = take(7, w, V, V_in, t);
+    A = take(7, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -10341,7 +10433,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 7, w, code, tau);
 }
@@ -10351,26 +10443,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 7, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[8*LANES], V_in[7*LANES], tau_in[7*LANES], wrench_in[6*LANES];
     real M[49*LANES], Z[7*LANES], H[49*LANES];
     real force[7*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 8, w, t);
-    check_input(V, 7, w, t);
-    check_input(tau, 7, w, t);
+    X = take(8, w, X, X_in, t);
+    V = take(7, w, V, V_in, t);
+    tau = take(7, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 7; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 7; ++j) {
-                sum += H[(i*7 + j)*w + k]*tau[7*k + j];
+                sum += H[(i*7 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 7; ++i) {
@@ -10382,7 +10474,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 7, w, code, A);
 }
@@ -10392,14 +10484,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 7);
+    const int code = all_finite(A, 7) ? HYBRID_3RRRS_REDUNDANT_OK : HYBRID_3RRRS_REDUNDANT_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 7; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? HYBRID_3RRRS_REDUNDANT_OK : HYBRID_3RRRS_REDUNDANT_INVALID;
+    deliver(A, 7, 1, &code, completed);
+    return code;
 }
 
 int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -10410,7 +10500,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
     verdict values, *const t = &values;
     int code = hybrid_3rrrs_redundant_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != HYBRID_3RRRS_REDUNDANT_OK) {
-        deliver(leg_force, 9, 1, &code, forces);
+        refuse(9, forces);
         return code;
     }
     start(1, t);
@@ -10420,7 +10510,7 @@ int hybrid_3rrrs_redundant_leg_reactions(const prepared *m, const real *X, const
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 9, 1, t);
+    check(9, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 9, 1, &code, forces);
     return code;
@@ -10432,8 +10522,8 @@ int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 8, 1, t);
-    check_input(V, 7, 1, t);
+    check(8, 1, X, t->invalid);
+    check(7, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 7; ++i) {
@@ -10441,7 +10531,7 @@ int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *
             energies[0] += V[i]*M[i*7 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

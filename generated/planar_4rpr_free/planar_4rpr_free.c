@@ -11,13 +11,16 @@ typedef planar_4rpr_free_real real;
 typedef planar_4rpr_free_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? PLANAR_4RPR_FREE_INVALID
+            : t->diverged[k] > 0 ? PLANAR_4RPR_FREE_NOT_CONVERGED
             : t->unreachable[k] > 0 ? PLANAR_4RPR_FREE_UNREACHABLE
             : t->singular[k] > 0 ? PLANAR_4RPR_FREE_SINGULAR
-            : t->diverged[k] > 0 ? PLANAR_4RPR_FREE_NOT_CONVERGED
             : t->overflow[k] > 0 ? PLANAR_4RPR_FREE_INVALID : PLANAR_4RPR_FREE_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == PLANAR_4RPR_FREE_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != PLANAR_4RPR_FREE_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -571,2843 +591,62 @@ int planar_4rpr_free_prepare(const planar_4rpr_free_params *params, planar_4rpr_
     return PLANAR_4RPR_FREE_OK;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics: 303 mul, 215 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], W_p_t[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_q_t[LANES], sum[18][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[9][8], entry[3][8], singular[8];
-} dynamics_results_rpr;
-typedef struct {
-    real sum[9][8], singular[8];
-} dynamics_results_rpr2;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
-        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->W_p_t[k] = W_p_t;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
-    }
-}
-
-INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_t = s->W_p_t[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real h_1_rpr_x = m->h_1_rpr_x[i];
-        const real h_1_rpr_y = m->h_1_rpr_y[i];
-        const real h_2_rpr_x = m->h_2_rpr_x[i];
-        const real h_2_rpr_y = m->h_2_rpr_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_rpr_yx = h_2_rpr_y*inv_root_1_rpr;
-        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rpr_yy = -h_2_rpr_x*inv_root_1_rpr - inv_root_1_rpr*(h_2_rpr_x +
-            J_group_1_rpr_zz*inv_root_1_rpr);
-        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rpr_t = R(0.5)*d_c_rpr_yy;
-        const real Q_rpr_t_2 = Q_rpr_t*axis_x_y - axis_x_x*d_G_rpr_yx;
-        const real Q_rpr_t_3 = Q_rpr_t*axis_x_x + axis_x_y*d_G_rpr_yx;
-        const real Q_rpr_t_4 = 2*Q_rpr_t_2*axis_x_y;
-        const real Q_rpr_t_5 = Q_rpr_t_2*axis_x_x + Q_rpr_t_3*axis_x_y;
-        const real Q_rpr_t_6 = 2*Q_rpr_t_3*axis_x_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_rpr_t_4*q_rpr_in_base_y + Q_rpr_t_5*q_rpr_in_base_x;
-        const real M_ta_t_2 = Q_rpr_t_5*q_rpr_in_base_y + Q_rpr_t_6*q_rpr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x;
-        /* (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y;
-        const real g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x;
-        /* (rpr-A1) centripetal acceleration of the connection point */
-        const real u_1_rpr_t = W_p_t*q_rpr_in_base_x;
-        const real u_1_rpr_t_2 = W_p_t*q_rpr_in_base_y;
-        const real u_1_rpr_tip_y = axis_x_y*u_1_rpr_t - axis_x_x*u_1_rpr_t_2;
-        /* (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rpr_o_x = -g_tip_x - axis_x_x*u_1_rpr_t - axis_x_y*u_1_rpr_t_2;
-        const real acc_2_rpr_o_y = u_1_rpr_tip_y - g_tip_y;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y;
-        const real S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x;
-        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
-        /* (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_rpr_o_y = u_1_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
-        /* (rpr-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rpr_o = inv_root_1_rpr*rel_rpr_o_y;
-        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rpr_o_z = J_group_1_rpr_zz*qdd_1_rpr_o + acc_2_rpr_o_y*h_2_rpr_x +
-            g_tip_x*h_1_rpr_y - acc_2_rpr_o_x*h_2_rpr_y - g_tip_y*h_1_rpr_x;
-        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_rpr_o_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr_o;
-        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_rpr_o_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr_o -
-            inv_root_1_rpr*mu_1_rpr_o_z;
-        /* (rpr-N25) velocity and gravity terms of the leg force */
-        const real U_rpr_in_base_x = axis_x_x*phi_2_rpr_o_x + axis_x_y*c_rpr_o_y;
-        const real U_rpr_in_base_y = axis_x_y*phi_2_rpr_o_x - axis_x_x*c_rpr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
-        o->sum[0][k] = Q_rpr_t_4;  /* total_rpr_xx */
-        o->sum[1][k] = Q_rpr_t_5;  /* total_rpr_xy */
-        o->sum[2][k] = Q_rpr_t_6;  /* total_rpr_yy */
-        o->sum[3][k] = M_ta_t;  /* total_rpr_xz */
-        o->sum[4][k] = M_ta_t_2;  /* total_rpr_yz */
-        o->sum[5][k] = M_aa_t;  /* total_rpr_zz */
-        o->sum[6][k] = U_rpr_in_base_x;  /* total_rpr_x */
-        o->sum[7][k] = U_rpr_in_base_y;  /* total_rpr_y */
-        o->sum[8][k] = Z_a_t;  /* total_rpr_z */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = H_a_2_rpr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void dynamics_place_rpr(size_t w, const dynamics_results_rpr *o, size_t leg, size_t first,
-    real *H, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void dynamics_legs_rpr2(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_t = s->W_p_t[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
-        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
-        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
-        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_rpr2_yx = h_2_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rpr2_yy = -h_2_rpr2_x*inv_root_1_rpr2 - inv_root_1_rpr2*(h_2_rpr2_x +
-            J_group_1_rpr2_zz*inv_root_1_rpr2);
-        /* (rpr2-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rpr2_t = R(0.5)*d_c_rpr2_yy;
-        const real Q_rpr2_t_2 = Q_rpr2_t*axis_x_y_2 - axis_x_x_2*d_G_rpr2_yx;
-        const real Q_rpr2_t_3 = Q_rpr2_t*axis_x_x_2 + axis_x_y_2*d_G_rpr2_yx;
-        const real Q_rpr2_t_4 = 2*Q_rpr2_t_2*axis_x_y_2;
-        const real Q_rpr2_t_5 = Q_rpr2_t_2*axis_x_x_2 + Q_rpr2_t_3*axis_x_y_2;
-        const real Q_rpr2_t_6 = 2*Q_rpr2_t_3*axis_x_x_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rpr2_t_4*q_rpr2_in_base_y + Q_rpr2_t_5*q_rpr2_in_base_x;
-        const real M_ta_t_4 = Q_rpr2_t_5*q_rpr2_in_base_y + Q_rpr2_t_6*q_rpr2_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rpr2_in_base_y + M_ta_t_4*q_rpr2_in_base_x;
-        /* (rpr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_tip_x_2 = axis_x_x_2*gravity_x + axis_x_y_2*gravity_y;
-        const real g_tip_y_2 = axis_x_x_2*gravity_y - axis_x_y_2*gravity_x;
-        /* (rpr2-A1) centripetal acceleration of the connection point */
-        const real u_1_rpr2_t = W_p_t*q_rpr2_in_base_x;
-        const real u_1_rpr2_t_2 = W_p_t*q_rpr2_in_base_y;
-        const real u_1_rpr2_tip_y = axis_x_y_2*u_1_rpr2_t - axis_x_x_2*u_1_rpr2_t_2;
-        /* (rpr2-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rpr2_o_x = -g_tip_x_2 - axis_x_x_2*u_1_rpr2_t - axis_x_y_2*u_1_rpr2_t_2;
-        const real acc_2_rpr2_o_y = u_1_rpr2_tip_y - g_tip_y_2;
-        /* (rpr2-V1) velocity of the connection point */
-        const real S_dot_rpr2_x = t_dot_x - omega_z*q_rpr2_in_base_y;
-        const real S_dot_rpr2_y = t_dot_y + omega_z*q_rpr2_in_base_x;
-        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
-        /* (rpr2-V6) rate of joint 1 */
-        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
-            S_dot_rpr2_x*axis_x_y_2);
-        /* (rpr2-V9) centripetal tensor of link 1 */
-        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
-        /* (rpr2-A6) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_rpr2_o_y = u_1_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
-        /* (rpr2-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rpr2_o = inv_root_1_rpr2*rel_rpr2_o_y;
-        /* (rpr2-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rpr2_o_z = J_group_1_rpr2_zz*qdd_1_rpr2_o + acc_2_rpr2_o_y*h_2_rpr2_x +
-            g_tip_x_2*h_1_rpr2_y - acc_2_rpr2_o_x*h_2_rpr2_y - g_tip_y_2*h_1_rpr2_x;
-        /* (rpr2-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_rpr2_o_x = -W_1_rpr2_t*h_2_rpr2_x - h_2_rpr2_y*qdd_1_rpr2_o;
-        /* (rpr2-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_rpr2_o_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2_o -
-            inv_root_1_rpr2*mu_1_rpr2_o_z;
-        /* (rpr2-N25) velocity and gravity terms of the leg force */
-        const real U_rpr2_in_base_x = axis_x_x_2*phi_2_rpr2_o_x + axis_x_y_2*c_rpr2_o_y;
-        const real U_rpr2_in_base_y = axis_x_y_2*phi_2_rpr2_o_x - axis_x_x_2*c_rpr2_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t_2 = U_rpr2_in_base_y*q_rpr2_in_base_x -
-            U_rpr2_in_base_x*q_rpr2_in_base_y;
-        o->sum[0][k] = Q_rpr2_t_4;  /* total_rpr2_xx */
-        o->sum[1][k] = Q_rpr2_t_5;  /* total_rpr2_xy */
-        o->sum[2][k] = Q_rpr2_t_6;  /* total_rpr2_yy */
-        o->sum[3][k] = M_ta_t_3;  /* total_rpr2_xz */
-        o->sum[4][k] = M_ta_t_4;  /* total_rpr2_yz */
-        o->sum[5][k] = M_aa_t_2;  /* total_rpr2_zz */
-        o->sum[6][k] = U_rpr2_in_base_x;  /* total_rpr2_x */
-        o->sum[7][k] = U_rpr2_in_base_y;  /* total_rpr2_y */
-        o->sum[8][k] = Z_a_t_2;  /* total_rpr2_z */
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void dynamics_place_rpr2(size_t w, const dynamics_results_rpr2 *o, size_t first, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_rpr_xx = s->sum[0][k];
-        const real total_rpr_xy = s->sum[1][k];
-        const real total_rpr_yy = s->sum[2][k];
-        const real total_rpr_xz = s->sum[3][k];
-        const real total_rpr_yz = s->sum[4][k];
-        const real total_rpr_zz = s->sum[5][k];
-        const real total_rpr_x = s->sum[6][k];
-        const real total_rpr_y = s->sum[7][k];
-        const real total_rpr_z = s->sum[8][k];
-        const real total_rpr2_xx = s->sum[9][k];
-        const real total_rpr2_xy = s->sum[10][k];
-        const real total_rpr2_yy = s->sum[11][k];
-        const real total_rpr2_xz = s->sum[12][k];
-        const real total_rpr2_yz = s->sum[13][k];
-        const real total_rpr2_zz = s->sum[14][k];
-        const real total_rpr2_x = s->sum[15][k];
-        const real total_rpr2_y = s->sum[16][k];
-        const real total_rpr2_z = s->sum[17][k];
-        const real J_star_t_10 = m->J_star_t_10;
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rpr2_xx - total_rpr_xx;
-        const real M_tt_xy = total_rpr2_xy + total_rpr_xy;
-        const real M_tt_yy = m_star - total_rpr2_yy - total_rpr_yy;
-        /* (M2) coupling block of M */
-        const real M_ta_xz = total_rpr2_xz + total_rpr_xz - h_star_in_base_y;
-        const real M_ta_yz = h_star_in_base_x - total_rpr2_yz - total_rpr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_10 - total_rpr2_zz - total_rpr_zz;
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_rpr2_x + total_rpr_x;
-        const real Z_t_y = Z_p_y + total_rpr2_y + total_rpr_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_z = total_rpr2_z + total_rpr_z - Z_q_t;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_yy;
-        M[2*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_xz;
-        M[5*w + k] = M_ta_yz;
-        M[7*w + k] = M_ta_yz;
-        M[8*w + k] = M_aa_zz;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_a_z;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_rpr results_rpr;
-    dynamics_results_rpr2 results_rpr2;
-    dynamics_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            dynamics_place_rpr(w, &results_rpr, leg, 0, H, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_place_rpr2(w, &results_rpr2, leg, t);
-        }
-        for (size_t n = 0; n < 9; ++n) {
-            s->sum[9 + n][0] = total(results_rpr2.sum[n], 1);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            dynamics_place_rpr2(w, &results_rpr2, 0, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[9 + n][k] = leg ? s->sum[9 + n][k] + results_rpr2.sum[n][k] : results_rpr2.sum[n][k];
-                }
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, int *code)
-{
-    real M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 9, w, t);
-    check_output(Z_of, 3, w, t);
-    check_output(H_of, 9, w, t);
-    judge(t, w, code);
-    deliver(M_of, 9, w, code, M);
-    deliver(Z_of, 3, w, code, Z);
-    deliver(H_of, 9, w, code, H);
-}
-
-/* ---- M: 140 mul, 105 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], sum[12][LANES];
-} M_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} M_results_rpr;
-typedef struct {
-    real sum[6][8], singular[8];
-} M_results_rpr2;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-    }
-}
-
-INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real h_2_rpr_x = m->h_2_rpr_x[i];
-        const real h_2_rpr_y = m->h_2_rpr_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_rpr_yx = h_2_rpr_y*inv_root_1_rpr;
-        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rpr_yy = -h_2_rpr_x*inv_root_1_rpr - inv_root_1_rpr*(h_2_rpr_x +
-            J_group_1_rpr_zz*inv_root_1_rpr);
-        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rpr_t = R(0.5)*d_c_rpr_yy;
-        const real Q_rpr_t_2 = Q_rpr_t*axis_x_y - axis_x_x*d_G_rpr_yx;
-        const real Q_rpr_t_3 = Q_rpr_t*axis_x_x + axis_x_y*d_G_rpr_yx;
-        const real Q_rpr_t_4 = 2*Q_rpr_t_2*axis_x_y;
-        const real Q_rpr_t_5 = Q_rpr_t_2*axis_x_x + Q_rpr_t_3*axis_x_y;
-        const real Q_rpr_t_6 = 2*Q_rpr_t_3*axis_x_x;
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_rpr_t_4*q_rpr_in_base_y + Q_rpr_t_5*q_rpr_in_base_x;
-        const real M_ta_t_2 = Q_rpr_t_5*q_rpr_in_base_y + Q_rpr_t_6*q_rpr_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x;
-        o->sum[0][k] = Q_rpr_t_4;  /* total_rpr_xx */
-        o->sum[1][k] = Q_rpr_t_5;  /* total_rpr_xy */
-        o->sum[2][k] = Q_rpr_t_6;  /* total_rpr_yy */
-        o->sum[3][k] = M_ta_t;  /* total_rpr_xz */
-        o->sum[4][k] = M_ta_t_2;  /* total_rpr_yz */
-        o->sum[5][k] = M_aa_t;  /* total_rpr_zz */
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void M_place_rpr(size_t w, const M_results_rpr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_legs_rpr2(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
-        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-N19) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_rpr2_yx = h_2_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-N22) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d_c_rpr2_yy = -h_2_rpr2_x*inv_root_1_rpr2 - inv_root_1_rpr2*(h_2_rpr2_x +
-            J_group_1_rpr2_zz*inv_root_1_rpr2);
-        /* (rpr2-N24) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_rpr2_t = R(0.5)*d_c_rpr2_yy;
-        const real Q_rpr2_t_2 = Q_rpr2_t*axis_x_y_2 - axis_x_x_2*d_G_rpr2_yx;
-        const real Q_rpr2_t_3 = Q_rpr2_t*axis_x_x_2 + axis_x_y_2*d_G_rpr2_yx;
-        const real Q_rpr2_t_4 = 2*Q_rpr2_t_2*axis_x_y_2;
-        const real Q_rpr2_t_5 = Q_rpr2_t_2*axis_x_x_2 + Q_rpr2_t_3*axis_x_y_2;
-        const real Q_rpr2_t_6 = 2*Q_rpr2_t_3*axis_x_x_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_3 = Q_rpr2_t_4*q_rpr2_in_base_y + Q_rpr2_t_5*q_rpr2_in_base_x;
-        const real M_ta_t_4 = Q_rpr2_t_5*q_rpr2_in_base_y + Q_rpr2_t_6*q_rpr2_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_t_2 = M_ta_t_3*q_rpr2_in_base_y + M_ta_t_4*q_rpr2_in_base_x;
-        o->sum[0][k] = Q_rpr2_t_4;  /* total_rpr2_xx */
-        o->sum[1][k] = Q_rpr2_t_5;  /* total_rpr2_xy */
-        o->sum[2][k] = Q_rpr2_t_6;  /* total_rpr2_yy */
-        o->sum[3][k] = M_ta_t_3;  /* total_rpr2_xz */
-        o->sum[4][k] = M_ta_t_4;  /* total_rpr2_yz */
-        o->sum[5][k] = M_aa_t_2;  /* total_rpr2_zz */
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void M_place_rpr2(size_t w, const M_results_rpr2 *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real total_rpr_xx = s->sum[0][k];
-        const real total_rpr_xy = s->sum[1][k];
-        const real total_rpr_yy = s->sum[2][k];
-        const real total_rpr_xz = s->sum[3][k];
-        const real total_rpr_yz = s->sum[4][k];
-        const real total_rpr_zz = s->sum[5][k];
-        const real total_rpr2_xx = s->sum[6][k];
-        const real total_rpr2_xy = s->sum[7][k];
-        const real total_rpr2_yy = s->sum[8][k];
-        const real total_rpr2_xz = s->sum[9][k];
-        const real total_rpr2_yz = s->sum[10][k];
-        const real total_rpr2_zz = s->sum[11][k];
-        const real J_star_t_10 = m->J_star_t_10;
-        const real m_star = m->m_star;
-        /* (M1) translational block of M */
-        const real M_tt_xx = m_star - total_rpr2_xx - total_rpr_xx;
-        const real M_tt_xy = total_rpr2_xy + total_rpr_xy;
-        const real M_tt_yy = m_star - total_rpr2_yy - total_rpr_yy;
-        /* (M2) coupling block of M */
-        const real M_ta_xz = total_rpr2_xz + total_rpr_xz - h_star_in_base_y;
-        const real M_ta_yz = h_star_in_base_x - total_rpr2_yz - total_rpr_yz;
-        /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_10 - total_rpr2_zz - total_rpr_zz;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = M_tt_xy;
-        M[3*w + k] = M_tt_xy;
-        M[4*w + k] = M_tt_yy;
-        M[2*w + k] = M_ta_xz;
-        M[6*w + k] = M_ta_xz;
-        M[5*w + k] = M_ta_yz;
-        M[7*w + k] = M_ta_yz;
-        M[8*w + k] = M_aa_zz;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_rpr results_rpr;
-    M_results_rpr2 results_rpr2;
-    M_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            M_place_rpr(w, &results_rpr, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        M_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_place_rpr2(w, &results_rpr2, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            s->sum[6 + n][0] = total(results_rpr2.sum[n], 1);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            M_place_rpr2(w, &results_rpr2, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[6 + n][k] = leg ? s->sum[6 + n][k] + results_rpr2.sum[n][k] : results_rpr2.sum[n][k];
-                }
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
-{
-    real M_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    M_run(m, w, X, M_of, t);
-    check_output(M_of, 9, w, t);
-    judge(t, w, code);
-    deliver(M_of, 9, w, code, M);
-}
-
-/* ---- Z: 213 mul, 145 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], W_p_t[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[3][8], singular[8];
-} Z_results_rpr;
-typedef struct {
-    real sum[3][8], singular[8];
-} Z_results_rpr2;
-
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y);
-        const real Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x);
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
-            R_yx*gravity_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->W_p_t[k] = W_p_t;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_q_t[k] = Z_q_t;
-    }
-}
-
-INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_t = s->W_p_t[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real h_1_rpr_x = m->h_1_rpr_x[i];
-        const real h_1_rpr_y = m->h_1_rpr_y[i];
-        const real h_2_rpr_x = m->h_2_rpr_x[i];
-        const real h_2_rpr_y = m->h_2_rpr_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y;
-        const real g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x;
-        /* (rpr-A1) centripetal acceleration of the connection point */
-        const real u_1_rpr_t = W_p_t*q_rpr_in_base_x;
-        const real u_1_rpr_t_2 = W_p_t*q_rpr_in_base_y;
-        const real u_1_rpr_tip_y = axis_x_y*u_1_rpr_t - axis_x_x*u_1_rpr_t_2;
-        /* (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rpr_o_x = -g_tip_x - axis_x_x*u_1_rpr_t - axis_x_y*u_1_rpr_t_2;
-        const real acc_2_rpr_o_y = u_1_rpr_tip_y - g_tip_y;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y;
-        const real S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x;
-        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
-        /* (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_rpr_o_y = u_1_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
-        /* (rpr-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rpr_o = inv_root_1_rpr*rel_rpr_o_y;
-        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rpr_o_z = J_group_1_rpr_zz*qdd_1_rpr_o + acc_2_rpr_o_y*h_2_rpr_x +
-            g_tip_x*h_1_rpr_y - acc_2_rpr_o_x*h_2_rpr_y - g_tip_y*h_1_rpr_x;
-        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_rpr_o_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr_o;
-        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_rpr_o_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr_o -
-            inv_root_1_rpr*mu_1_rpr_o_z;
-        /* (rpr-N25) velocity and gravity terms of the leg force */
-        const real U_rpr_in_base_x = axis_x_x*phi_2_rpr_o_x + axis_x_y*c_rpr_o_y;
-        const real U_rpr_in_base_y = axis_x_y*phi_2_rpr_o_x - axis_x_x*c_rpr_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y;
-        o->sum[0][k] = U_rpr_in_base_x;  /* total_rpr_x */
-        o->sum[1][k] = U_rpr_in_base_y;  /* total_rpr_y */
-        o->sum[2][k] = Z_a_t;  /* total_rpr_z */
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void Z_place_rpr(size_t w, const Z_results_rpr *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_legs_rpr2(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real W_p_t = s->W_p_t[j];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
-        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
-        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
-        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
-           less gravity */
-        const real g_tip_x_2 = axis_x_x_2*gravity_x + axis_x_y_2*gravity_y;
-        const real g_tip_y_2 = axis_x_x_2*gravity_y - axis_x_y_2*gravity_x;
-        /* (rpr2-A1) centripetal acceleration of the connection point */
-        const real u_1_rpr2_t = W_p_t*q_rpr2_in_base_x;
-        const real u_1_rpr2_t_2 = W_p_t*q_rpr2_in_base_y;
-        const real u_1_rpr2_tip_y = axis_x_y_2*u_1_rpr2_t - axis_x_x_2*u_1_rpr2_t_2;
-        /* (rpr2-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
-           less gravity */
-        const real acc_2_rpr2_o_x = -g_tip_x_2 - axis_x_x_2*u_1_rpr2_t - axis_x_y_2*u_1_rpr2_t_2;
-        const real acc_2_rpr2_o_y = u_1_rpr2_tip_y - g_tip_y_2;
-        /* (rpr2-V1) velocity of the connection point */
-        const real S_dot_rpr2_x = t_dot_x - omega_z*q_rpr2_in_base_y;
-        const real S_dot_rpr2_y = t_dot_y + omega_z*q_rpr2_in_base_x;
-        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
-        /* (rpr2-V6) rate of joint 1 */
-        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
-            S_dot_rpr2_x*axis_x_y_2);
-        /* (rpr2-V9) centripetal tensor of link 1 */
-        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
-        /* (rpr2-A6) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_rpr2_o_y = u_1_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
-        /* (rpr2-A8) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_rpr2_o = inv_root_1_rpr2*rel_rpr2_o_y;
-        /* (rpr2-N14) remainder without the acceleration in: inertia moment of the links that turn with
-           link 1, about their reference points */
-        const real mu_1_rpr2_o_z = J_group_1_rpr2_zz*qdd_1_rpr2_o + acc_2_rpr2_o_y*h_2_rpr2_x +
-            g_tip_x_2*h_1_rpr2_y - acc_2_rpr2_o_x*h_2_rpr2_y - g_tip_y_2*h_1_rpr2_x;
-        /* (rpr2-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
-           its reference point */
-        const real phi_2_rpr2_o_x = -W_1_rpr2_t*h_2_rpr2_x - h_2_rpr2_y*qdd_1_rpr2_o;
-        /* (rpr2-N23) remainder without the acceleration in: leg force on the platform without actuation
-           and without the mass at the connection point */
-        const real c_rpr2_o_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2_o -
-            inv_root_1_rpr2*mu_1_rpr2_o_z;
-        /* (rpr2-N25) velocity and gravity terms of the leg force */
-        const real U_rpr2_in_base_x = axis_x_x_2*phi_2_rpr2_o_x + axis_x_y_2*c_rpr2_o_y;
-        const real U_rpr2_in_base_y = axis_x_y_2*phi_2_rpr2_o_x - axis_x_x_2*c_rpr2_o_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_t_2 = U_rpr2_in_base_y*q_rpr2_in_base_x -
-            U_rpr2_in_base_x*q_rpr2_in_base_y;
-        o->sum[0][k] = U_rpr2_in_base_x;  /* total_rpr2_x */
-        o->sum[1][k] = U_rpr2_in_base_y;  /* total_rpr2_y */
-        o->sum[2][k] = Z_a_t_2;  /* total_rpr2_z */
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void Z_place_rpr2(size_t w, const Z_results_rpr2 *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_q_t = s->Z_q_t[k];
-        const real total_rpr_x = s->sum[0][k];
-        const real total_rpr_y = s->sum[1][k];
-        const real total_rpr_z = s->sum[2][k];
-        const real total_rpr2_x = s->sum[3][k];
-        const real total_rpr2_y = s->sum[4][k];
-        const real total_rpr2_z = s->sum[5][k];
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_rpr2_x + total_rpr_x;
-        const real Z_t_y = Z_p_y + total_rpr2_y + total_rpr_y;
-        /* (M7) rotational part of Z */
-        const real Z_a_z = total_rpr2_z + total_rpr_z - Z_q_t;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_a_z;
-    }
-}
-
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
-{
-    Z_values values, *const s = &values;
-    Z_results_rpr results_rpr;
-    Z_results_rpr2 results_rpr2;
-    Z_before(m, w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            Z_place_rpr(w, &results_rpr, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_place_rpr2(w, &results_rpr2, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rpr2.sum[n], 1);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            Z_place_rpr2(w, &results_rpr2, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rpr2.sum[n][k] : results_rpr2.sum[n][k];
-                }
-            }
-        }
-    }
-    Z_after(w, s, Z);
-}
-
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
-{
-    real Z_of[3*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 3, w, t);
-    judge(t, w, code);
-    deliver(Z_of, 3, w, code, Z);
-}
-
-/* ---- H: 45 mul, 30 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} H_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} H_results_rpr;
-
-INLINE void H_before(size_t w, const real *X, H_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-    }
-}
-
-INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = H_a_2_rpr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void H_place_rpr(size_t w, const H_results_rpr *o, size_t leg, size_t first, real *H,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
-{
-    H_values values, *const s = &values;
-    H_results_rpr results_rpr;
-    H_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            H_place_rpr(w, &results_rpr, leg, 0, H, t);
-        }
-    }
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
-{
-    real H_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    H_run(m, w, X, H_of, t);
-    check_output(H_of, 9, w, t);
-    judge(t, w, code);
-    deliver(H_of, 9, w, code, H);
-}
-
-/* ---- required: 240 mul, 169 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
-        mu_p_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[3][8], entry[3][8], singular[8];
-} required_results_rpr;
-typedef struct {
-    real sum[3][8], singular[8];
-} required_results_rpr2;
-
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real alpha_z = A_2;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
-        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_z*omega_z;
-        /* (E1) acceleration of the platform origin, less gravity */
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real a_t_y = t_ddot_y - gravity_y;
-        /* (E2) inertia force of the platform less its weight */
-        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
-        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
-        /* (E3) inertia moment of the platform less that of its weight */
-        const real mu_p_z = J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) -
-            h_star_y*(R_xx*a_t_x + R_yx*a_t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->mu_p_z[k] = mu_p_z;
-    }
-}
-
-INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rpr_x = m->h_1_rpr_x[i];
-        const real h_1_rpr_y = m->h_1_rpr_y[i];
-        const real h_2_rpr_x = m->h_2_rpr_x[i];
-        const real h_2_rpr_y = m->h_2_rpr_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_rpr_t = omega_z*q_rpr_in_base_y;
-        const real S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x;
-        const real S_dot_rpr_x = t_dot_x - S_dot_rpr_t;
-        const real S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y;
-        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1_rpr = inv_root_1_rpr*px_1_rpr;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rpr = inv_root_1_rpr*py_1_rpr;
-        /* (rpr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y;
-        const real a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x;
-        /* (rpr-A3) acceleration of the connection point */
-        const real S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z;
-        const real S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z;
-        const real S_ddot_rpr_tip_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y;
-        /* (rpr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rpr_y = S_ddot_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
-        /* (rpr-A7) acceleration of joint 1 */
-        const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x = c_1_rpr*g_r0_x + g_r0_y*s_1_rpr;
-        const real g_r1_y = c_1_rpr*g_r0_y - g_r0_x*s_1_rpr;
-        const real acc_2_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y - g_r1_x;
-        const real acc_2_rpr_y = S_ddot_rpr_tip_y - g_r1_y;
-        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rpr_z = J_group_1_rpr_zz*qdd_1_rpr + acc_2_rpr_y*h_2_rpr_x +
-            g_r1_x*h_1_rpr_y - acc_2_rpr_x*h_2_rpr_y - g_r1_y*h_1_rpr_x;
-        /* (rpr-N5) inertia force of link 2 from its turning about its reference point */
-        const real phi_2_rpr_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr;
-        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rpr_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr -
-            inv_root_1_rpr*mu_1_rpr_z;
-        const real c_rpr_in_base_x = -axis_x_x*phi_2_rpr_x - axis_x_y*c_rpr_y;
-        const real c_rpr_in_base_y = axis_x_x*c_rpr_y - axis_x_y*phi_2_rpr_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = c_rpr_in_base_y*q_rpr_in_base_x - c_rpr_in_base_x*q_rpr_in_base_y;
-        o->sum[0][k] = c_rpr_in_base_x;  /* total_rpr_x */
-        o->sum[1][k] = c_rpr_in_base_y;  /* total_rpr_y */
-        o->sum[2][k] = R_a_t;  /* total_rpr_z */
-        o->entry[0][k] = axis_x_x;
-        o->entry[1][k] = axis_x_y;
-        o->entry[2][k] = H_a_2_rpr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void required_place_rpr(size_t w, const required_results_rpr *o, size_t leg, size_t first,
-    real *H, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void required_legs_rpr2(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
-        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
-        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
-        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-V1) velocity of the connection point */
-        const real S_dot_rpr2_t = omega_z*q_rpr2_in_base_y;
-        const real S_dot_rpr2_t_2 = omega_z*q_rpr2_in_base_x;
-        const real S_dot_rpr2_x = t_dot_x - S_dot_rpr2_t;
-        const real S_dot_rpr2_y = S_dot_rpr2_t_2 + t_dot_y;
-        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
-        /* (rpr2-V6) rate of joint 1 */
-        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
-            S_dot_rpr2_x*axis_x_y_2);
-        /* (rpr2-V9) centripetal tensor of link 1 */
-        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
-        /* (rpr2-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1_rpr2 = inv_root_1_rpr2*px_1_rpr2;
-        /* (rpr2-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rpr2 = inv_root_1_rpr2*py_1_rpr2;
-        /* (rpr2-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rpr2_x = t_ddot_x - alpha_z*q_rpr2_in_base_y;
-        const real a_p_rpr2_y = t_ddot_y + alpha_z*q_rpr2_in_base_x;
-        /* (rpr2-A3) acceleration of the connection point */
-        const real S_ddot_rpr2_x = a_p_rpr2_x - S_dot_rpr2_t_2*omega_z;
-        const real S_ddot_rpr2_y = a_p_rpr2_y - S_dot_rpr2_t*omega_z;
-        const real S_ddot_rpr2_tip_y = S_ddot_rpr2_y*axis_x_x_2 - S_ddot_rpr2_x*axis_x_y_2;
-        /* (rpr2-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rpr2_y = S_ddot_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
-        /* (rpr2-A7) acceleration of joint 1 */
-        const real qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y;
-        /* (rpr2-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x_2 = c_1_rpr2*g_r0_x_2 + g_r0_y_2*s_1_rpr2;
-        const real g_r1_y_2 = c_1_rpr2*g_r0_y_2 - g_r0_x_2*s_1_rpr2;
-        const real acc_2_rpr2_x = S_ddot_rpr2_x*axis_x_x_2 + S_ddot_rpr2_y*axis_x_y_2 - g_r1_x_2;
-        const real acc_2_rpr2_y = S_ddot_rpr2_tip_y - g_r1_y_2;
-        /* (rpr2-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rpr2_z = J_group_1_rpr2_zz*qdd_1_rpr2 + acc_2_rpr2_y*h_2_rpr2_x +
-            g_r1_x_2*h_1_rpr2_y - acc_2_rpr2_x*h_2_rpr2_y - g_r1_y_2*h_1_rpr2_x;
-        /* (rpr2-N5) inertia force of link 2 from its turning about its reference point */
-        const real phi_2_rpr2_x = -W_1_rpr2_t*h_2_rpr2_x - h_2_rpr2_y*qdd_1_rpr2;
-        /* (rpr2-N21) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rpr2_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2 -
-            inv_root_1_rpr2*mu_1_rpr2_z;
-        const real c_rpr2_in_base_x = -axis_x_x_2*phi_2_rpr2_x - axis_x_y_2*c_rpr2_y;
-        const real c_rpr2_in_base_y = axis_x_x_2*c_rpr2_y - axis_x_y_2*phi_2_rpr2_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t_2 = c_rpr2_in_base_y*q_rpr2_in_base_x -
-            c_rpr2_in_base_x*q_rpr2_in_base_y;
-        o->sum[0][k] = c_rpr2_in_base_x;  /* total_rpr2_x */
-        o->sum[1][k] = c_rpr2_in_base_y;  /* total_rpr2_y */
-        o->sum[2][k] = R_a_t_2;  /* total_rpr2_z */
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void required_place_rpr2(size_t w, const required_results_rpr2 *o, size_t first, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void required_after(size_t w, const required_values *s, real *required)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real mu_p_z = s->mu_p_z[k];
-        const real total_rpr_x = s->sum[0][k];
-        const real total_rpr_y = s->sum[1][k];
-        const real total_rpr_z = s->sum[2][k];
-        const real total_rpr2_x = s->sum[3][k];
-        const real total_rpr2_y = s->sum[4][k];
-        const real total_rpr2_z = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x - total_rpr2_x - total_rpr_x;
-        const real R_t_y = f_p_y - total_rpr2_y - total_rpr_y;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_z = mu_p_z - total_rpr2_z - total_rpr_z;
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_a_z;
-    }
-}
-
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *required, real *H, verdict *t)
-{
-    required_values values, *const s = &values;
-    required_results_rpr results_rpr;
-    required_results_rpr2 results_rpr2;
-    required_before(m, w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_place_rpr(w, &results_rpr, leg, leg, H, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            required_place_rpr(w, &results_rpr, leg, 0, H, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        required_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_place_rpr2(w, &results_rpr2, leg, t);
-        }
-        for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rpr2.sum[n], 1);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            required_place_rpr2(w, &results_rpr2, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rpr2.sum[n][k] : results_rpr2.sum[n][k];
-                }
-            }
-        }
-    }
-    required_after(w, s, required);
-}
-
-/* ---- inverse_kinematics: 52 mul, 36 add, 4 div, 4 sqrt, 4 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} inverse_kinematics_results_rpr;
-typedef struct {
-    real entry[2][8], singular[8];
-} inverse_kinematics_results_rpr2;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-    }
-}
-
-INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
-            R_yx*rpr_platform_point_y;
-        const real S_rpr_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
-            rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        /* (rpr-K9) displacement of joint 1 */
-        const real q_1_rpr = angle(inv_root_1_rpr*py_1_rpr, inv_root_1_rpr*px_1_rpr);
-        o->entry[0][k] = q_1_rpr;
-        o->entry[1][k] = root_1_rpr;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void inverse_kinematics_place_rpr(size_t w, const inverse_kinematics_results_rpr *o, size_t
-    leg, size_t first, real *q, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        q[(2*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void inverse_kinematics_legs_rpr2(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real S_rpr2_x = t_x + R_xx*rpr2_platform_point_x - rpr2_base_point_x -
-            R_yx*rpr2_platform_point_y;
-        const real S_rpr2_y = t_y + R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x -
-            rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        /* (rpr2-K9) displacement of joint 1 */
-        const real q_1_rpr2 = angle(inv_root_1_rpr2*py_1_rpr2, inv_root_1_rpr2*px_1_rpr2);
-        o->entry[0][k] = q_1_rpr2;
-        o->entry[1][k] = root_1_rpr2;
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void inverse_kinematics_place_rpr2(size_t w, const inverse_kinematics_results_rpr2 *o,
-    size_t first, real *q, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        q[(6)*w + k] = o->entry[0][first + k];
-        q[(7)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
-{
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_rpr results_rpr;
-    inverse_kinematics_results_rpr2 results_rpr2;
-    inverse_kinematics_before(w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_place_rpr(w, &results_rpr, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            inverse_kinematics_place_rpr(w, &results_rpr, leg, 0, q, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_place_rpr2(w, &results_rpr2, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            inverse_kinematics_place_rpr2(w, &results_rpr2, 0, q, t);
-        }
-    }
-}
-
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
-{
-    real q_of[8*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 8, w, t);
-    judge(t, w, code);
-    deliver(q_of, 8, w, code, q);
-}
-
-/* ---- joint_rates: 80 mul, 52 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_rates_results_rpr;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_rates_results_rpr2;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-    }
-}
-
-INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y;
-        const real S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x;
-        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
-        o->entry[0][k] = qd_1_rpr;
-        o->entry[1][k] = S_dot_rpr_tip_x;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void joint_rates_place_rpr(size_t w, const joint_rates_results_rpr *o, size_t leg, size_t
-    first, real *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(2*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_legs_rpr2(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-V1) velocity of the connection point */
-        const real S_dot_rpr2_x = t_dot_x - omega_z*q_rpr2_in_base_y;
-        const real S_dot_rpr2_y = t_dot_y + omega_z*q_rpr2_in_base_x;
-        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
-        /* (rpr2-V6) rate of joint 1 */
-        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
-            S_dot_rpr2_x*axis_x_y_2);
-        o->entry[0][k] = qd_1_rpr2;
-        o->entry[1][k] = S_dot_rpr2_tip_x;
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void joint_rates_place_rpr2(size_t w, const joint_rates_results_rpr2 *o, size_t first, real
-    *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(6)*w + k] = o->entry[0][first + k];
-        qd[(7)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
-    verdict *t)
-{
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_rpr results_rpr;
-    joint_rates_results_rpr2 results_rpr2;
-    joint_rates_before(w, X, V, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_place_rpr(w, &results_rpr, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            joint_rates_place_rpr(w, &results_rpr, leg, 0, qd, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_place_rpr2(w, &results_rpr2, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            joint_rates_place_rpr2(w, &results_rpr2, 0, qd, t);
-        }
-    }
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *rates, int *code)
-{
-    real qd_of[8*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 8, w, t);
-    judge(t, w, code);
-    deliver(qd_of, 8, w, code, rates);
-}
-
-/* ---- joint_accelerations: 132 mul, 84 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_accelerations_results_rpr;
-typedef struct {
-    real entry[2][8], singular[8];
-} joint_accelerations_results_rpr2;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-    }
-}
-
-INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_rpr_t = omega_z*q_rpr_in_base_y;
-        const real S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x;
-        const real S_dot_rpr_x = t_dot_x - S_dot_rpr_t;
-        const real S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y;
-        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
-        /* (rpr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y;
-        const real a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x;
-        /* (rpr-A3) acceleration of the connection point */
-        const real S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z;
-        const real S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z;
-        /* (rpr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y +
-            qd_1_rpr*qd_1_rpr*root_1_rpr;
-        const real rel_rpr_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y -
-            2*S_dot_rpr_tip_x*qd_1_rpr;
-        /* (rpr-A7) acceleration of joint 1 */
-        const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
-        o->entry[0][k] = qdd_1_rpr;
-        o->entry[1][k] = rel_rpr_x;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void joint_accelerations_place_rpr(size_t w, const joint_accelerations_results_rpr *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(2*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_accelerations_legs_rpr2(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr2
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-V1) velocity of the connection point */
-        const real S_dot_rpr2_t = omega_z*q_rpr2_in_base_y;
-        const real S_dot_rpr2_t_2 = omega_z*q_rpr2_in_base_x;
-        const real S_dot_rpr2_x = t_dot_x - S_dot_rpr2_t;
-        const real S_dot_rpr2_y = S_dot_rpr2_t_2 + t_dot_y;
-        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
-        /* (rpr2-V6) rate of joint 1 */
-        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
-            S_dot_rpr2_x*axis_x_y_2);
-        /* (rpr2-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rpr2_x = t_ddot_x - alpha_z*q_rpr2_in_base_y;
-        const real a_p_rpr2_y = t_ddot_y + alpha_z*q_rpr2_in_base_x;
-        /* (rpr2-A3) acceleration of the connection point */
-        const real S_ddot_rpr2_x = a_p_rpr2_x - S_dot_rpr2_t_2*omega_z;
-        const real S_ddot_rpr2_y = a_p_rpr2_y - S_dot_rpr2_t*omega_z;
-        /* (rpr2-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rpr2_x = S_ddot_rpr2_x*axis_x_x_2 + S_ddot_rpr2_y*axis_x_y_2 +
-            qd_1_rpr2*qd_1_rpr2*root_1_rpr2;
-        const real rel_rpr2_y = S_ddot_rpr2_y*axis_x_x_2 - S_ddot_rpr2_x*axis_x_y_2 -
-            2*S_dot_rpr2_tip_x*qd_1_rpr2;
-        /* (rpr2-A7) acceleration of joint 1 */
-        const real qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y;
-        o->entry[0][k] = qdd_1_rpr2;
-        o->entry[1][k] = rel_rpr2_x;
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void joint_accelerations_place_rpr2(size_t w, const joint_accelerations_results_rpr2 *o,
-    size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(6)*w + k] = o->entry[0][first + k];
-        qdd[(7)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
-{
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_rpr results_rpr;
-    joint_accelerations_results_rpr2 results_rpr2;
-    joint_accelerations_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_place_rpr(w, &results_rpr, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            joint_accelerations_place_rpr(w, &results_rpr, leg, 0, qdd, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_place_rpr2(w, &results_rpr2, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            joint_accelerations_place_rpr2(w, &results_rpr2, 0, qdd, t);
-        }
-    }
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *accelerations, int *code)
-{
-    real qdd_of[8*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(A, 3, w, t);
-    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 8, w, t);
-    judge(t, w, code);
-    deliver(qdd_of, 8, w, code, accelerations);
-}
-
-/* ---- legs: 216 mul, 140 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
-        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[4][8], singular[8];
-} legs_results_rpr;
-typedef struct {
-    real entry[2][8], singular[8];
-} legs_results_rpr2;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real omega_z = V_2;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real alpha_z = A_2;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->alpha_z[k] = alpha_z;
-    }
-}
-
-INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rpr_x = m->h_1_rpr_x[i];
-        const real h_1_rpr_y = m->h_1_rpr_y[i];
-        const real h_2_rpr_x = m->h_2_rpr_x[i];
-        const real h_2_rpr_y = m->h_2_rpr_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_link2_mass = m->rpr_link2_mass[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
-        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
-        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
-        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
-        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
-        /* (rpr-V1) velocity of the connection point */
-        const real S_dot_rpr_t = omega_z*q_rpr_in_base_y;
-        const real S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x;
-        const real S_dot_rpr_x = t_dot_x - S_dot_rpr_t;
-        const real S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y;
-        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
-        /* (rpr-V6) rate of joint 1 */
-        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
-        /* (rpr-V9) centripetal tensor of link 1 */
-        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1_rpr = inv_root_1_rpr*px_1_rpr;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rpr = inv_root_1_rpr*py_1_rpr;
-        /* (rpr-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y;
-        const real a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x;
-        /* (rpr-A3) acceleration of the connection point */
-        const real S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z;
-        const real S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z;
-        const real S_ddot_rpr_tip_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y;
-        /* (rpr-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rpr_y = S_ddot_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
-        /* (rpr-A7) acceleration of joint 1 */
-        const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
-        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x = c_1_rpr*g_r0_x + g_r0_y*s_1_rpr;
-        const real g_r1_y = c_1_rpr*g_r0_y - g_r0_x*s_1_rpr;
-        const real acc_2_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y - g_r1_x;
-        const real acc_2_rpr_y = S_ddot_rpr_tip_y - g_r1_y;
-        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rpr_z = J_group_1_rpr_zz*qdd_1_rpr + acc_2_rpr_y*h_2_rpr_x +
-            g_r1_x*h_1_rpr_y - acc_2_rpr_x*h_2_rpr_y - g_r1_y*h_1_rpr_x;
-        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rpr_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr -
-            inv_root_1_rpr*mu_1_rpr_z;
-        /* (rpr-N26) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_rpr_x = W_1_rpr_t*h_2_rpr_x + h_2_rpr_y*qdd_1_rpr -
-            acc_2_rpr_x*rpr_link2_mass;
-        const real c_true_rpr_y = c_rpr_y - acc_2_rpr_y*rpr_link2_mass;
-        const real c_true_rpr_in_base_x = axis_x_x*c_true_rpr_x - axis_x_y*c_true_rpr_y;
-        const real c_true_rpr_in_base_y = axis_x_x*c_true_rpr_y + axis_x_y*c_true_rpr_x;
-        o->entry[0][k] = c_true_rpr_in_base_x;
-        o->entry[1][k] = c_true_rpr_in_base_y;
-        o->entry[2][k] = axis_x_x;
-        o->entry[3][k] = axis_x_y;
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void legs_place_rpr(size_t w, const legs_results_rpr *o, size_t leg, size_t first, real
-    *leg_force, real *drive, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        drive[(3*leg)*w + k] = o->entry[2][first + k];
-        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void legs_legs_rpr2(const prepared *m, size_t leg, size_t legs, const legs_values *s,
-    size_t states, size_t count, legs_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
-        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
-        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
-        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_link2_mass = m->rpr2_link2_mass[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
-        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
-        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
-        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
-        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
-        /* (rpr2-V1) velocity of the connection point */
-        const real S_dot_rpr2_t = omega_z*q_rpr2_in_base_y;
-        const real S_dot_rpr2_t_2 = omega_z*q_rpr2_in_base_x;
-        const real S_dot_rpr2_x = t_dot_x - S_dot_rpr2_t;
-        const real S_dot_rpr2_y = S_dot_rpr2_t_2 + t_dot_y;
-        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
-        /* (rpr2-V6) rate of joint 1 */
-        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
-            S_dot_rpr2_x*axis_x_y_2);
-        /* (rpr2-V9) centripetal tensor of link 1 */
-        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
-        /* (rpr2-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1_rpr2 = inv_root_1_rpr2*px_1_rpr2;
-        /* (rpr2-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rpr2 = inv_root_1_rpr2*py_1_rpr2;
-        /* (rpr2-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_rpr2_x = t_ddot_x - alpha_z*q_rpr2_in_base_y;
-        const real a_p_rpr2_y = t_ddot_y + alpha_z*q_rpr2_in_base_x;
-        /* (rpr2-A3) acceleration of the connection point */
-        const real S_ddot_rpr2_x = a_p_rpr2_x - S_dot_rpr2_t_2*omega_z;
-        const real S_ddot_rpr2_y = a_p_rpr2_y - S_dot_rpr2_t*omega_z;
-        const real S_ddot_rpr2_tip_y = S_ddot_rpr2_y*axis_x_x_2 - S_ddot_rpr2_x*axis_x_y_2;
-        /* (rpr2-A5) acceleration of the connection point left to the joint accelerations */
-        const real rel_rpr2_y = S_ddot_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
-        /* (rpr2-A7) acceleration of joint 1 */
-        const real qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y;
-        /* (rpr2-N3) acceleration of the reference point of link 2, less gravity */
-        const real g_r1_x_2 = c_1_rpr2*g_r0_x_2 + g_r0_y_2*s_1_rpr2;
-        const real g_r1_y_2 = c_1_rpr2*g_r0_y_2 - g_r0_x_2*s_1_rpr2;
-        const real acc_2_rpr2_x = S_ddot_rpr2_x*axis_x_x_2 + S_ddot_rpr2_y*axis_x_y_2 - g_r1_x_2;
-        const real acc_2_rpr2_y = S_ddot_rpr2_tip_y - g_r1_y_2;
-        /* (rpr2-N12) inertia moment of the links that turn with link 1, about their reference points */
-        const real mu_1_rpr2_z = J_group_1_rpr2_zz*qdd_1_rpr2 + acc_2_rpr2_y*h_2_rpr2_x +
-            g_r1_x_2*h_1_rpr2_y - acc_2_rpr2_x*h_2_rpr2_y - g_r1_y_2*h_1_rpr2_x;
-        /* (rpr2-N21) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_rpr2_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2 -
-            inv_root_1_rpr2*mu_1_rpr2_z;
-        /* (rpr2-N26) leg force on the platform without actuation, the last link's mass included */
-        const real c_true_rpr2_x = W_1_rpr2_t*h_2_rpr2_x + h_2_rpr2_y*qdd_1_rpr2 -
-            acc_2_rpr2_x*rpr2_link2_mass;
-        const real c_true_rpr2_y = c_rpr2_y - acc_2_rpr2_y*rpr2_link2_mass;
-        const real c_true_rpr2_in_base_x = axis_x_x_2*c_true_rpr2_x - axis_x_y_2*c_true_rpr2_y;
-        const real c_true_rpr2_in_base_y = axis_x_x_2*c_true_rpr2_y + axis_x_y_2*c_true_rpr2_x;
-        o->entry[0][k] = c_true_rpr2_in_base_x;
-        o->entry[1][k] = c_true_rpr2_in_base_y;
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void legs_place_rpr2(size_t w, const legs_results_rpr2 *o, size_t first, real *leg_force,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(9)*w + k] = o->entry[0][first + k];
-        leg_force[(10)*w + k] = o->entry[1][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, verdict *t)
-{
-    legs_values values, *const s = &values;
-    legs_results_rpr results_rpr;
-    legs_results_rpr2 results_rpr2;
-    clear(leg_force, 12*w);
-    clear(drive, 9*w);
-    legs_before(w, X, V, A, s);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_place_rpr(w, &results_rpr, leg, leg, leg_force, drive, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            legs_place_rpr(w, &results_rpr, leg, 0, leg_force, drive, t);
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_place_rpr2(w, &results_rpr2, leg, leg_force, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            legs_place_rpr2(w, &results_rpr2, 0, leg_force, t);
-        }
-    }
-}
-
-/* ---- potential: 108 mul, 83 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], potential_t[LANES], sum[2][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_rpr;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_rpr2;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real m_star = m->m_star;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real R_xx = cosine(X_2);
-        const real R_yx = sine(X_2);
-        /* (V1) potential energy */
-        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
-            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->R_xx[k] = R_xx;
-        s->R_yx[k] = R_yx;
-        s->potential_t[k] = potential_t;
-    }
-}
-
-INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rpr *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real b_rpr_r0_x = m->b_rpr_r0_x[i];
-        const real b_rpr_r0_y = m->b_rpr_r0_y[i];
-        const real branch_1_rpr = m->branch_1_rpr[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real h_1_rpr_x = m->h_1_rpr_x[i];
-        const real h_1_rpr_y = m->h_1_rpr_y[i];
-        const real h_2_rpr_x = m->h_2_rpr_x[i];
-        const real h_2_rpr_y = m->h_2_rpr_y[i];
-        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
-        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
-        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
-        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
-        const real rpr_base_point_x = m->rpr_base_point_x[i];
-        const real rpr_base_point_y = m->rpr_base_point_y[i];
-        const real rpr_link1_mass = m->rpr_link1_mass[i];
-        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
-        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
-        /* (rpr-K1) from the base point to the connection point */
-        const real S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
-            R_yx*rpr_platform_point_y;
-        const real S_rpr_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
-            rpr_base_point_y;
-        /* (rpr-K2) component along the reference direction */
-        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
-        /* (rpr-K3) component across the reference direction */
-        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
-        /* (rpr-K5) squared amplitude */
-        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
-        /* (rpr-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
-        /* (rpr-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr = 1/root_1_rpr;
-        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1_rpr = inv_root_1_rpr*px_1_rpr;
-        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rpr = inv_root_1_rpr*py_1_rpr;
-        /* (V1) potential energy */
-        const real potential_t_3 = (c_1_rpr*g_r0_x + g_r0_y*s_1_rpr)*(h_1_rpr_x + h_2_rpr_x +
-            rpr_link1_mass*(b_rpr_r0_x*c_1_rpr + b_rpr_r0_y*s_1_rpr)) + (c_1_rpr*g_r0_y -
-            g_r0_x*s_1_rpr)*(h_1_rpr_y + h_2_rpr_y + rpr_link1_mass*(b_rpr_r0_y*c_1_rpr -
-            b_rpr_r0_x*s_1_rpr));
-        o->sum[0][k] = potential_t_3;  /* total_rpr */
-        o->singular[k] = unless(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            unless(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
-    }
-}
-
-INLINE void potential_place_rpr(size_t w, const potential_results_rpr *o, size_t first, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void potential_legs_rpr2(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rpr2 *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real R_xx = s->R_xx[j];
-        const real R_yx = s->R_yx[j];
-        const real b_rpr2_r0_x = m->b_rpr2_r0_x[i];
-        const real b_rpr2_r0_y = m->b_rpr2_r0_y[i];
-        const real branch_1_rpr2 = m->branch_1_rpr2[i];
-        const real g_r0_x_2 = m->g_r0_x_2[i];
-        const real g_r0_y_2 = m->g_r0_y_2[i];
-        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
-        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
-        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
-        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
-        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
-        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
-        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
-        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
-        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
-        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
-        const real rpr2_link1_mass = m->rpr2_link1_mass[i];
-        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
-        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
-        const real size_rpr2 = m->size_rpr2[i];
-        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
-        /* (rpr2-K1) from the base point to the connection point */
-        const real S_rpr2_x = t_x + R_xx*rpr2_platform_point_x - rpr2_base_point_x -
-            R_yx*rpr2_platform_point_y;
-        const real S_rpr2_y = t_y + R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x -
-            rpr2_base_point_y;
-        /* (rpr2-K2) component along the reference direction */
-        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
-        /* (rpr2-K3) component across the reference direction */
-        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
-        /* (rpr2-K5) squared amplitude */
-        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
-        /* (rpr2-K6) amplitude, with the sign of the branch */
-        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
-        /* (rpr2-V4) reciprocal vector 1 */
-        const real inv_root_1_rpr2 = 1/root_1_rpr2;
-        /* (rpr2-K7) cosine of the angle of joint 1 from its reference direction */
-        const real c_1_rpr2 = inv_root_1_rpr2*px_1_rpr2;
-        /* (rpr2-K8) sine of the angle of joint 1 from its reference direction */
-        const real s_1_rpr2 = inv_root_1_rpr2*py_1_rpr2;
-        /* (V1) potential energy */
-        const real potential_t_2 = (c_1_rpr2*g_r0_x_2 + g_r0_y_2*s_1_rpr2)*(h_1_rpr2_x +
-            h_2_rpr2_x + rpr2_link1_mass*(b_rpr2_r0_x*c_1_rpr2 + b_rpr2_r0_y*s_1_rpr2)) +
-            (c_1_rpr2*g_r0_y_2 - g_r0_x_2*s_1_rpr2)*(h_1_rpr2_y + h_2_rpr2_y +
-            rpr2_link1_mass*(b_rpr2_r0_y*c_1_rpr2 - b_rpr2_r0_x*s_1_rpr2));
-        o->sum[0][k] = potential_t_2;  /* total_rpr2 */
-        o->singular[k] = unless(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
-            unless(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
-    }
-}
-
-INLINE void potential_place_rpr2(size_t w, const potential_results_rpr2 *o, size_t first, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_rpr = s->sum[0][k];
-        const real total_rpr2 = s->sum[1][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t - total_rpr - total_rpr2;
-        potential[0*w + k] = potential_;
-    }
-}
-
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
-{
-    potential_values values, *const s = &values;
-    potential_results_rpr results_rpr;
-    potential_results_rpr2 results_rpr2;
-    potential_before(m, w, X, s);
-    if (w == 1) {  /* the legs side by side */
-        potential_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_place_rpr(w, &results_rpr, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_rpr.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
-            potential_place_rpr(w, &results_rpr, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rpr.sum[n][k] : results_rpr.sum[n][k];
-                }
-            }
-        }
-    }
-    if (w == 1) {  /* the legs side by side */
-        potential_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_place_rpr2(w, &results_rpr2, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            s->sum[1 + n][0] = total(results_rpr2.sum[n], 1);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
-            potential_place_rpr2(w, &results_rpr2, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[1 + n][k] = leg ? s->sum[1 + n][k] + results_rpr2.sum[n][k] : results_rpr2.sum[n][k];
-                }
-            }
-        }
-    }
-    potential_after(w, s, potential);
-}
-
 /* ---- linear equations ---- */
 
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
 {
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
     }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
         }
         for (size_t j = 0; j < stride; ++j) {
             const real moved = a[best*stride + j];
             a[best*stride + j] = a[p*stride + j];
             a[p*stride + j] = moved;
         }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
         for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
         }
     }
     for (size_t p = n; p-- > 0;) {
@@ -3418,24 +657,44 @@ INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
 {
-    real larger[LANES];
+    real swap[LANES], keep[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
     }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
         }
     }
 }
 
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
@@ -3443,8 +702,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
             for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
         for (size_t k = 0; k < LANES; ++k) {
@@ -3457,12 +715,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -3500,12 +756,12 @@ INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *sin
     }
 }
 
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
+/* Add the wrench to a generalised force; extra coordinates get none. */
 INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
 {
     for (size_t k = 0; k < w; ++k) {
         for (size_t e = 0; e < 3; ++e) {
-            force[e*w + k] += sign*wrench[3*k + e];
+            force[e*w + k] += sign*wrench[e*w + k];
         }
     }
 }
@@ -3649,6 +905,2840 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics: 303 mul, 215 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
+        omega_z[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES], W_p_t[LANES], Z_p_x[LANES],
+        Z_p_y[LANES], Z_q_t[LANES], sum[18][LANES];
+} dynamics_values;
+typedef struct {
+    real sum[9][8], entry[3][8], singular[8];
+} dynamics_results_rpr;
+typedef struct {
+    real sum[9][8], singular[8];
+} dynamics_results_rpr2;
+
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
+    dynamics_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real omega_z = V_2;
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
+        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        /* (P1) centripetal tensor of the platform */
+        const real W_p_t = omega_z*omega_z;
+        /* (M4) centripetal force and weight of the platform */
+        const real Z_p_x = -Z_p_t - W_p_t*h_star_in_base_x;
+        const real Z_p_y = -Z_p_t_2 - W_p_t*h_star_in_base_y;
+        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
+            R_yx*gravity_y);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->omega_z[k] = omega_z;
+        s->h_star_in_base_x[k] = h_star_in_base_x;
+        s->h_star_in_base_y[k] = h_star_in_base_y;
+        s->W_p_t[k] = W_p_t;
+        s->Z_p_x[k] = Z_p_x;
+        s->Z_p_y[k] = Z_p_y;
+        s->Z_q_t[k] = Z_q_t;
+    }
+}
+
+INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const dynamics_values
+    *s, size_t states, size_t count, int add, dynamics_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real W_p_t = s->W_p_t[j];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real h_1_rpr_x = m->h_1_rpr_x[i];
+        const real h_1_rpr_y = m->h_1_rpr_y[i];
+        const real h_2_rpr_x = m->h_2_rpr_x[i];
+        const real h_2_rpr_y = m->h_2_rpr_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_rpr_yx = h_2_rpr_y*inv_root_1_rpr;
+        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rpr_yy = -h_2_rpr_x*inv_root_1_rpr - inv_root_1_rpr*(h_2_rpr_x +
+            J_group_1_rpr_zz*inv_root_1_rpr);
+        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rpr_t = R(0.5)*d_c_rpr_yy;
+        const real Q_rpr_t_2 = Q_rpr_t*axis_x_y - axis_x_x*d_G_rpr_yx;
+        const real Q_rpr_t_3 = Q_rpr_t*axis_x_x + axis_x_y*d_G_rpr_yx;
+        const real Q_rpr_t_4 = 2*Q_rpr_t_2*axis_x_y;
+        const real Q_rpr_t_5 = Q_rpr_t_2*axis_x_x + Q_rpr_t_3*axis_x_y;
+        const real Q_rpr_t_6 = 2*Q_rpr_t_3*axis_x_x;
+        /* (M2) coupling block of M */
+        const real M_ta_t = Q_rpr_t_4*q_rpr_in_base_y + Q_rpr_t_5*q_rpr_in_base_x;
+        const real M_ta_t_2 = Q_rpr_t_5*q_rpr_in_base_y + Q_rpr_t_6*q_rpr_in_base_x;
+        /* (M3) rotational block of M */
+        const real M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x;
+        /* (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
+           less gravity */
+        const real g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y;
+        const real g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x;
+        /* (rpr-A1) centripetal acceleration of the connection point */
+        const real u_1_rpr_t = W_p_t*q_rpr_in_base_x;
+        const real u_1_rpr_t_2 = W_p_t*q_rpr_in_base_y;
+        const real u_1_rpr_tip_y = axis_x_y*u_1_rpr_t - axis_x_x*u_1_rpr_t_2;
+        /* (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
+           less gravity */
+        const real acc_2_rpr_o_x = -g_tip_x - axis_x_x*u_1_rpr_t - axis_x_y*u_1_rpr_t_2;
+        const real acc_2_rpr_o_y = u_1_rpr_tip_y - g_tip_y;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y;
+        const real S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x;
+        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
+        /* (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_rpr_o_y = u_1_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
+        /* (rpr-A8) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_rpr_o = inv_root_1_rpr*rel_rpr_o_y;
+        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real mu_1_rpr_o_z = J_group_1_rpr_zz*qdd_1_rpr_o + acc_2_rpr_o_y*h_2_rpr_x +
+            g_tip_x*h_1_rpr_y - acc_2_rpr_o_x*h_2_rpr_y - g_tip_y*h_1_rpr_x;
+        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real phi_2_rpr_o_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr_o;
+        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real c_rpr_o_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr_o -
+            inv_root_1_rpr*mu_1_rpr_o_z;
+        /* (rpr-N25) velocity and gravity terms of the leg force */
+        const real U_rpr_in_base_x = axis_x_x*phi_2_rpr_o_x + axis_x_y*c_rpr_o_y;
+        const real U_rpr_in_base_y = axis_x_y*phi_2_rpr_o_x - axis_x_x*c_rpr_o_y;
+        /* (M7) rotational part of Z */
+        const real Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rpr_t_4 : Q_rpr_t_4;  /* total_rpr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rpr_t_5 : Q_rpr_t_5;  /* total_rpr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rpr_t_6 : Q_rpr_t_6;  /* total_rpr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rpr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rpr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rpr_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_rpr_in_base_x : U_rpr_in_base_x;  /* total_rpr_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_rpr_in_base_y : U_rpr_in_base_y;  /* total_rpr_y */
+        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t : Z_a_t;  /* total_rpr_z */
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->entry[2][k] = H_a_2_rpr_z;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void dynamics_place_rpr(size_t w, const dynamics_results_rpr *o, size_t leg, size_t first,
+    real *H, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void dynamics_legs_rpr2(const prepared *m, size_t leg, size_t legs, const dynamics_values
+    *s, size_t states, size_t count, int add, dynamics_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real W_p_t = s->W_p_t[j];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
+        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
+        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
+        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-N19) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_rpr2_yx = h_2_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-N22) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rpr2_yy = -h_2_rpr2_x*inv_root_1_rpr2 - inv_root_1_rpr2*(h_2_rpr2_x +
+            J_group_1_rpr2_zz*inv_root_1_rpr2);
+        /* (rpr2-N24) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rpr2_t = R(0.5)*d_c_rpr2_yy;
+        const real Q_rpr2_t_2 = Q_rpr2_t*axis_x_y_2 - axis_x_x_2*d_G_rpr2_yx;
+        const real Q_rpr2_t_3 = Q_rpr2_t*axis_x_x_2 + axis_x_y_2*d_G_rpr2_yx;
+        const real Q_rpr2_t_4 = 2*Q_rpr2_t_2*axis_x_y_2;
+        const real Q_rpr2_t_5 = Q_rpr2_t_2*axis_x_x_2 + Q_rpr2_t_3*axis_x_y_2;
+        const real Q_rpr2_t_6 = 2*Q_rpr2_t_3*axis_x_x_2;
+        /* (M2) coupling block of M */
+        const real M_ta_t_3 = Q_rpr2_t_4*q_rpr2_in_base_y + Q_rpr2_t_5*q_rpr2_in_base_x;
+        const real M_ta_t_4 = Q_rpr2_t_5*q_rpr2_in_base_y + Q_rpr2_t_6*q_rpr2_in_base_x;
+        /* (M3) rotational block of M */
+        const real M_aa_t_2 = M_ta_t_3*q_rpr2_in_base_y + M_ta_t_4*q_rpr2_in_base_x;
+        /* (rpr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
+           less gravity */
+        const real g_tip_x_2 = axis_x_x_2*gravity_x + axis_x_y_2*gravity_y;
+        const real g_tip_y_2 = axis_x_x_2*gravity_y - axis_x_y_2*gravity_x;
+        /* (rpr2-A1) centripetal acceleration of the connection point */
+        const real u_1_rpr2_t = W_p_t*q_rpr2_in_base_x;
+        const real u_1_rpr2_t_2 = W_p_t*q_rpr2_in_base_y;
+        const real u_1_rpr2_tip_y = axis_x_y_2*u_1_rpr2_t - axis_x_x_2*u_1_rpr2_t_2;
+        /* (rpr2-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
+           less gravity */
+        const real acc_2_rpr2_o_x = -g_tip_x_2 - axis_x_x_2*u_1_rpr2_t - axis_x_y_2*u_1_rpr2_t_2;
+        const real acc_2_rpr2_o_y = u_1_rpr2_tip_y - g_tip_y_2;
+        /* (rpr2-V1) velocity of the connection point */
+        const real S_dot_rpr2_x = t_dot_x - omega_z*q_rpr2_in_base_y;
+        const real S_dot_rpr2_y = t_dot_y + omega_z*q_rpr2_in_base_x;
+        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
+        /* (rpr2-V6) rate of joint 1 */
+        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
+            S_dot_rpr2_x*axis_x_y_2);
+        /* (rpr2-V9) centripetal tensor of link 1 */
+        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
+        /* (rpr2-A6) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_rpr2_o_y = u_1_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
+        /* (rpr2-A8) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_rpr2_o = inv_root_1_rpr2*rel_rpr2_o_y;
+        /* (rpr2-N14) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real mu_1_rpr2_o_z = J_group_1_rpr2_zz*qdd_1_rpr2_o + acc_2_rpr2_o_y*h_2_rpr2_x +
+            g_tip_x_2*h_1_rpr2_y - acc_2_rpr2_o_x*h_2_rpr2_y - g_tip_y_2*h_1_rpr2_x;
+        /* (rpr2-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real phi_2_rpr2_o_x = -W_1_rpr2_t*h_2_rpr2_x - h_2_rpr2_y*qdd_1_rpr2_o;
+        /* (rpr2-N23) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real c_rpr2_o_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2_o -
+            inv_root_1_rpr2*mu_1_rpr2_o_z;
+        /* (rpr2-N25) velocity and gravity terms of the leg force */
+        const real U_rpr2_in_base_x = axis_x_x_2*phi_2_rpr2_o_x + axis_x_y_2*c_rpr2_o_y;
+        const real U_rpr2_in_base_y = axis_x_y_2*phi_2_rpr2_o_x - axis_x_x_2*c_rpr2_o_y;
+        /* (M7) rotational part of Z */
+        const real Z_a_t_2 = U_rpr2_in_base_y*q_rpr2_in_base_x -
+            U_rpr2_in_base_x*q_rpr2_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rpr2_t_4 : Q_rpr2_t_4;  /* total_rpr2_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rpr2_t_5 : Q_rpr2_t_5;  /* total_rpr2_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rpr2_t_6 : Q_rpr2_t_6;  /* total_rpr2_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rpr2_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rpr2_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rpr2_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_rpr2_in_base_x : U_rpr2_in_base_x;  /* total_rpr2_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_rpr2_in_base_y : U_rpr2_in_base_y;  /* total_rpr2_y */
+        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t_2 : Z_a_t_2;  /* total_rpr2_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void dynamics_place_rpr2(size_t w, const dynamics_results_rpr2 *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
+    *Z)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real h_star_in_base_x = s->h_star_in_base_x[k];
+        const real h_star_in_base_y = s->h_star_in_base_y[k];
+        const real Z_p_x = s->Z_p_x[k];
+        const real Z_p_y = s->Z_p_y[k];
+        const real Z_q_t = s->Z_q_t[k];
+        const real total_rpr_xx = s->sum[0][k];
+        const real total_rpr_xy = s->sum[1][k];
+        const real total_rpr_yy = s->sum[2][k];
+        const real total_rpr_xz = s->sum[3][k];
+        const real total_rpr_yz = s->sum[4][k];
+        const real total_rpr_zz = s->sum[5][k];
+        const real total_rpr_x = s->sum[6][k];
+        const real total_rpr_y = s->sum[7][k];
+        const real total_rpr_z = s->sum[8][k];
+        const real total_rpr2_xx = s->sum[9][k];
+        const real total_rpr2_xy = s->sum[10][k];
+        const real total_rpr2_yy = s->sum[11][k];
+        const real total_rpr2_xz = s->sum[12][k];
+        const real total_rpr2_yz = s->sum[13][k];
+        const real total_rpr2_zz = s->sum[14][k];
+        const real total_rpr2_x = s->sum[15][k];
+        const real total_rpr2_y = s->sum[16][k];
+        const real total_rpr2_z = s->sum[17][k];
+        const real J_star_t_10 = m->J_star_t_10;
+        const real m_star = m->m_star;
+        /* (M1) translational block of M */
+        const real M_tt_xx = m_star - total_rpr2_xx - total_rpr_xx;
+        const real M_tt_xy = total_rpr2_xy + total_rpr_xy;
+        const real M_tt_yy = m_star - total_rpr2_yy - total_rpr_yy;
+        /* (M2) coupling block of M */
+        const real M_ta_xz = total_rpr2_xz + total_rpr_xz - h_star_in_base_y;
+        const real M_ta_yz = h_star_in_base_x - total_rpr2_yz - total_rpr_yz;
+        /* (M3) rotational block of M */
+        const real M_aa_zz = -J_star_t_10 - total_rpr2_zz - total_rpr_zz;
+        /* (M5) translational part of Z */
+        const real Z_t_x = Z_p_x + total_rpr2_x + total_rpr_x;
+        const real Z_t_y = Z_p_y + total_rpr2_y + total_rpr_y;
+        /* (M7) rotational part of Z */
+        const real Z_a_z = total_rpr2_z + total_rpr_z - Z_q_t;
+        M[0*w + k] = M_tt_xx;
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
+        M[4*w + k] = M_tt_yy;
+        M[2*w + k] = M_ta_xz;
+        M[6*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_yz;
+        M[7*w + k] = M_ta_yz;
+        M[8*w + k] = M_aa_zz;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_a_z;
+    }
+}
+
+INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
+    *Z, real *H, verdict *t)
+{
+    dynamics_values values, *const s = &values;
+    dynamics_results_rpr results_rpr;
+    dynamics_results_rpr2 results_rpr2;
+    dynamics_before(m, w, X, V, s);
+    if (w == 1) {  /* the legs side by side */
+        dynamics_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            dynamics_place_rpr(w, &results_rpr, leg, leg, H, t);
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            dynamics_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            dynamics_place_rpr(w, &results_rpr, leg, 0, H, t);
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        dynamics_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            dynamics_place_rpr2(w, &results_rpr2, leg, t);
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[9 + n][k] = total(results_rpr2.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            dynamics_legs_rpr2(m, leg, 0, s, 1, w, 1, &results_rpr2);
+            dynamics_place_rpr2(w, &results_rpr2, 0, t);
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[9 + n][k] = results_rpr2.sum[n][k];
+            }
+        }
+    }
+    dynamics_after(m, w, s, M, Z);
+}
+
+INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
+    *Z, real *H, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
+    check(9, w, M_of, t->overflow);
+    check(3, w, Z_of, t->overflow);
+    check(9, w, H_of, t->overflow);
+    judge(t, w, code);
+    deliver(M_of, 9, w, code, M);
+    deliver(Z_of, 3, w, code, Z);
+    deliver(H_of, 9, w, code, H);
+}
+
+/* ---- M: 140 mul, 105 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], h_star_in_base_x[LANES],
+        h_star_in_base_y[LANES], sum[12][LANES];
+} M_values;
+typedef struct {
+    real sum[6][8], singular[8];
+} M_results_rpr;
+typedef struct {
+    real sum[6][8], singular[8];
+} M_results_rpr2;
+
+INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
+        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->h_star_in_base_x[k] = h_star_in_base_x;
+        s->h_star_in_base_y[k] = h_star_in_base_y;
+    }
+}
+
+INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
+    states, size_t count, int add, M_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real h_2_rpr_x = m->h_2_rpr_x[i];
+        const real h_2_rpr_y = m->h_2_rpr_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-N19) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_rpr_yx = h_2_rpr_y*inv_root_1_rpr;
+        /* (rpr-N22) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rpr_yy = -h_2_rpr_x*inv_root_1_rpr - inv_root_1_rpr*(h_2_rpr_x +
+            J_group_1_rpr_zz*inv_root_1_rpr);
+        /* (rpr-N24) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rpr_t = R(0.5)*d_c_rpr_yy;
+        const real Q_rpr_t_2 = Q_rpr_t*axis_x_y - axis_x_x*d_G_rpr_yx;
+        const real Q_rpr_t_3 = Q_rpr_t*axis_x_x + axis_x_y*d_G_rpr_yx;
+        const real Q_rpr_t_4 = 2*Q_rpr_t_2*axis_x_y;
+        const real Q_rpr_t_5 = Q_rpr_t_2*axis_x_x + Q_rpr_t_3*axis_x_y;
+        const real Q_rpr_t_6 = 2*Q_rpr_t_3*axis_x_x;
+        /* (M2) coupling block of M */
+        const real M_ta_t = Q_rpr_t_4*q_rpr_in_base_y + Q_rpr_t_5*q_rpr_in_base_x;
+        const real M_ta_t_2 = Q_rpr_t_5*q_rpr_in_base_y + Q_rpr_t_6*q_rpr_in_base_x;
+        /* (M3) rotational block of M */
+        const real M_aa_t = M_ta_t*q_rpr_in_base_y + M_ta_t_2*q_rpr_in_base_x;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rpr_t_4 : Q_rpr_t_4;  /* total_rpr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rpr_t_5 : Q_rpr_t_5;  /* total_rpr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rpr_t_6 : Q_rpr_t_6;  /* total_rpr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rpr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rpr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rpr_zz */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void M_place_rpr(size_t w, const M_results_rpr *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void M_legs_rpr2(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
+    states, size_t count, int add, M_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
+        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-N19) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_rpr2_yx = h_2_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-N22) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d_c_rpr2_yy = -h_2_rpr2_x*inv_root_1_rpr2 - inv_root_1_rpr2*(h_2_rpr2_x +
+            J_group_1_rpr2_zz*inv_root_1_rpr2);
+        /* (rpr2-N24) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_rpr2_t = R(0.5)*d_c_rpr2_yy;
+        const real Q_rpr2_t_2 = Q_rpr2_t*axis_x_y_2 - axis_x_x_2*d_G_rpr2_yx;
+        const real Q_rpr2_t_3 = Q_rpr2_t*axis_x_x_2 + axis_x_y_2*d_G_rpr2_yx;
+        const real Q_rpr2_t_4 = 2*Q_rpr2_t_2*axis_x_y_2;
+        const real Q_rpr2_t_5 = Q_rpr2_t_2*axis_x_x_2 + Q_rpr2_t_3*axis_x_y_2;
+        const real Q_rpr2_t_6 = 2*Q_rpr2_t_3*axis_x_x_2;
+        /* (M2) coupling block of M */
+        const real M_ta_t_3 = Q_rpr2_t_4*q_rpr2_in_base_y + Q_rpr2_t_5*q_rpr2_in_base_x;
+        const real M_ta_t_4 = Q_rpr2_t_5*q_rpr2_in_base_y + Q_rpr2_t_6*q_rpr2_in_base_x;
+        /* (M3) rotational block of M */
+        const real M_aa_t_2 = M_ta_t_3*q_rpr2_in_base_y + M_ta_t_4*q_rpr2_in_base_x;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rpr2_t_4 : Q_rpr2_t_4;  /* total_rpr2_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rpr2_t_5 : Q_rpr2_t_5;  /* total_rpr2_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rpr2_t_6 : Q_rpr2_t_6;  /* total_rpr2_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rpr2_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rpr2_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rpr2_zz */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void M_place_rpr2(size_t w, const M_results_rpr2 *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real h_star_in_base_x = s->h_star_in_base_x[k];
+        const real h_star_in_base_y = s->h_star_in_base_y[k];
+        const real total_rpr_xx = s->sum[0][k];
+        const real total_rpr_xy = s->sum[1][k];
+        const real total_rpr_yy = s->sum[2][k];
+        const real total_rpr_xz = s->sum[3][k];
+        const real total_rpr_yz = s->sum[4][k];
+        const real total_rpr_zz = s->sum[5][k];
+        const real total_rpr2_xx = s->sum[6][k];
+        const real total_rpr2_xy = s->sum[7][k];
+        const real total_rpr2_yy = s->sum[8][k];
+        const real total_rpr2_xz = s->sum[9][k];
+        const real total_rpr2_yz = s->sum[10][k];
+        const real total_rpr2_zz = s->sum[11][k];
+        const real J_star_t_10 = m->J_star_t_10;
+        const real m_star = m->m_star;
+        /* (M1) translational block of M */
+        const real M_tt_xx = m_star - total_rpr2_xx - total_rpr_xx;
+        const real M_tt_xy = total_rpr2_xy + total_rpr_xy;
+        const real M_tt_yy = m_star - total_rpr2_yy - total_rpr_yy;
+        /* (M2) coupling block of M */
+        const real M_ta_xz = total_rpr2_xz + total_rpr_xz - h_star_in_base_y;
+        const real M_ta_yz = h_star_in_base_x - total_rpr2_yz - total_rpr_yz;
+        /* (M3) rotational block of M */
+        const real M_aa_zz = -J_star_t_10 - total_rpr2_zz - total_rpr_zz;
+        M[0*w + k] = M_tt_xx;
+        M[1*w + k] = M_tt_xy;
+        M[3*w + k] = M_tt_xy;
+        M[4*w + k] = M_tt_yy;
+        M[2*w + k] = M_ta_xz;
+        M[6*w + k] = M_ta_xz;
+        M[5*w + k] = M_ta_yz;
+        M[7*w + k] = M_ta_yz;
+        M[8*w + k] = M_aa_zz;
+    }
+}
+
+INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+{
+    M_values values, *const s = &values;
+    M_results_rpr results_rpr;
+    M_results_rpr2 results_rpr2;
+    M_before(m, w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        M_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            M_place_rpr(w, &results_rpr, leg, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            M_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            M_place_rpr(w, &results_rpr, 0, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        M_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            M_place_rpr2(w, &results_rpr2, leg, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[6 + n][k] = total(results_rpr2.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            M_legs_rpr2(m, leg, 0, s, 1, w, 1, &results_rpr2);
+            M_place_rpr2(w, &results_rpr2, 0, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[6 + n][k] = results_rpr2.sum[n][k];
+            }
+        }
+    }
+    M_after(m, w, s, M);
+}
+
+INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
+{
+    real X_in[3*LANES], M_of[9*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    M_run(m, w, X, M_of, t);
+    check(9, w, M_of, t->overflow);
+    judge(t, w, code);
+    deliver(M_of, 9, w, code, M);
+}
+
+/* ---- Z: 213 mul, 145 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
+        omega_z[LANES], W_p_t[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_q_t[LANES], sum[6][LANES];
+} Z_values;
+typedef struct {
+    real sum[3][8], singular[8];
+} Z_results_rpr;
+typedef struct {
+    real sum[3][8], singular[8];
+} Z_results_rpr2;
+
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real omega_z = V_2;
+        /* (P1) centripetal tensor of the platform */
+        const real W_p_t = omega_z*omega_z;
+        /* (M4) centripetal force and weight of the platform */
+        const real Z_p_x = -Z_p_t - W_p_t*(R_xx*h_star_x - R_yx*h_star_y);
+        const real Z_p_y = -Z_p_t_2 - W_p_t*(R_xx*h_star_y + R_yx*h_star_x);
+        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real Z_q_t = h_star_x*(R_xx*gravity_y - R_yx*gravity_x) - h_star_y*(R_xx*gravity_x +
+            R_yx*gravity_y);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->omega_z[k] = omega_z;
+        s->W_p_t[k] = W_p_t;
+        s->Z_p_x[k] = Z_p_x;
+        s->Z_p_y[k] = Z_p_y;
+        s->Z_q_t[k] = Z_q_t;
+    }
+}
+
+INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
+    states, size_t count, int add, Z_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real W_p_t = s->W_p_t[j];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real h_1_rpr_x = m->h_1_rpr_x[i];
+        const real h_1_rpr_y = m->h_1_rpr_y[i];
+        const real h_2_rpr_x = m->h_2_rpr_x[i];
+        const real h_2_rpr_y = m->h_2_rpr_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
+           less gravity */
+        const real g_tip_x = axis_x_x*gravity_x + axis_x_y*gravity_y;
+        const real g_tip_y = axis_x_x*gravity_y - axis_x_y*gravity_x;
+        /* (rpr-A1) centripetal acceleration of the connection point */
+        const real u_1_rpr_t = W_p_t*q_rpr_in_base_x;
+        const real u_1_rpr_t_2 = W_p_t*q_rpr_in_base_y;
+        const real u_1_rpr_tip_y = axis_x_y*u_1_rpr_t - axis_x_x*u_1_rpr_t_2;
+        /* (rpr-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
+           less gravity */
+        const real acc_2_rpr_o_x = -g_tip_x - axis_x_x*u_1_rpr_t - axis_x_y*u_1_rpr_t_2;
+        const real acc_2_rpr_o_y = u_1_rpr_tip_y - g_tip_y;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y;
+        const real S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x;
+        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
+        /* (rpr-A6) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_rpr_o_y = u_1_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
+        /* (rpr-A8) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_rpr_o = inv_root_1_rpr*rel_rpr_o_y;
+        /* (rpr-N14) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real mu_1_rpr_o_z = J_group_1_rpr_zz*qdd_1_rpr_o + acc_2_rpr_o_y*h_2_rpr_x +
+            g_tip_x*h_1_rpr_y - acc_2_rpr_o_x*h_2_rpr_y - g_tip_y*h_1_rpr_x;
+        /* (rpr-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real phi_2_rpr_o_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr_o;
+        /* (rpr-N23) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real c_rpr_o_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr_o -
+            inv_root_1_rpr*mu_1_rpr_o_z;
+        /* (rpr-N25) velocity and gravity terms of the leg force */
+        const real U_rpr_in_base_x = axis_x_x*phi_2_rpr_o_x + axis_x_y*c_rpr_o_y;
+        const real U_rpr_in_base_y = axis_x_y*phi_2_rpr_o_x - axis_x_x*c_rpr_o_y;
+        /* (M7) rotational part of Z */
+        const real Z_a_t = U_rpr_in_base_y*q_rpr_in_base_x - U_rpr_in_base_x*q_rpr_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + U_rpr_in_base_x : U_rpr_in_base_x;  /* total_rpr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rpr_in_base_y : U_rpr_in_base_y;  /* total_rpr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_rpr_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void Z_place_rpr(size_t w, const Z_results_rpr *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void Z_legs_rpr2(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
+    states, size_t count, int add, Z_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real W_p_t = s->W_p_t[j];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
+        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
+        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
+        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
+           less gravity */
+        const real g_tip_x_2 = axis_x_x_2*gravity_x + axis_x_y_2*gravity_y;
+        const real g_tip_y_2 = axis_x_x_2*gravity_y - axis_x_y_2*gravity_x;
+        /* (rpr2-A1) centripetal acceleration of the connection point */
+        const real u_1_rpr2_t = W_p_t*q_rpr2_in_base_x;
+        const real u_1_rpr2_t_2 = W_p_t*q_rpr2_in_base_y;
+        const real u_1_rpr2_tip_y = axis_x_y_2*u_1_rpr2_t - axis_x_x_2*u_1_rpr2_t_2;
+        /* (rpr2-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
+           less gravity */
+        const real acc_2_rpr2_o_x = -g_tip_x_2 - axis_x_x_2*u_1_rpr2_t - axis_x_y_2*u_1_rpr2_t_2;
+        const real acc_2_rpr2_o_y = u_1_rpr2_tip_y - g_tip_y_2;
+        /* (rpr2-V1) velocity of the connection point */
+        const real S_dot_rpr2_x = t_dot_x - omega_z*q_rpr2_in_base_y;
+        const real S_dot_rpr2_y = t_dot_y + omega_z*q_rpr2_in_base_x;
+        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
+        /* (rpr2-V6) rate of joint 1 */
+        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
+            S_dot_rpr2_x*axis_x_y_2);
+        /* (rpr2-V9) centripetal tensor of link 1 */
+        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
+        /* (rpr2-A6) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_rpr2_o_y = u_1_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
+        /* (rpr2-A8) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_rpr2_o = inv_root_1_rpr2*rel_rpr2_o_y;
+        /* (rpr2-N14) remainder without the acceleration in: inertia moment of the links that turn with
+           link 1, about their reference points */
+        const real mu_1_rpr2_o_z = J_group_1_rpr2_zz*qdd_1_rpr2_o + acc_2_rpr2_o_y*h_2_rpr2_x +
+            g_tip_x_2*h_1_rpr2_y - acc_2_rpr2_o_x*h_2_rpr2_y - g_tip_y_2*h_1_rpr2_x;
+        /* (rpr2-N7) remainder without the acceleration in: inertia force of link 2 from its turning about
+           its reference point */
+        const real phi_2_rpr2_o_x = -W_1_rpr2_t*h_2_rpr2_x - h_2_rpr2_y*qdd_1_rpr2_o;
+        /* (rpr2-N23) remainder without the acceleration in: leg force on the platform without actuation
+           and without the mass at the connection point */
+        const real c_rpr2_o_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2_o -
+            inv_root_1_rpr2*mu_1_rpr2_o_z;
+        /* (rpr2-N25) velocity and gravity terms of the leg force */
+        const real U_rpr2_in_base_x = axis_x_x_2*phi_2_rpr2_o_x + axis_x_y_2*c_rpr2_o_y;
+        const real U_rpr2_in_base_y = axis_x_y_2*phi_2_rpr2_o_x - axis_x_x_2*c_rpr2_o_y;
+        /* (M7) rotational part of Z */
+        const real Z_a_t_2 = U_rpr2_in_base_y*q_rpr2_in_base_x -
+            U_rpr2_in_base_x*q_rpr2_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + U_rpr2_in_base_x : U_rpr2_in_base_x;  /* total_rpr2_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rpr2_in_base_y : U_rpr2_in_base_y;  /* total_rpr2_y */
+        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t_2 : Z_a_t_2;  /* total_rpr2_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void Z_place_rpr2(size_t w, const Z_results_rpr2 *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real Z_p_x = s->Z_p_x[k];
+        const real Z_p_y = s->Z_p_y[k];
+        const real Z_q_t = s->Z_q_t[k];
+        const real total_rpr_x = s->sum[0][k];
+        const real total_rpr_y = s->sum[1][k];
+        const real total_rpr_z = s->sum[2][k];
+        const real total_rpr2_x = s->sum[3][k];
+        const real total_rpr2_y = s->sum[4][k];
+        const real total_rpr2_z = s->sum[5][k];
+        /* (M5) translational part of Z */
+        const real Z_t_x = Z_p_x + total_rpr2_x + total_rpr_x;
+        const real Z_t_y = Z_p_y + total_rpr2_y + total_rpr_y;
+        /* (M7) rotational part of Z */
+        const real Z_a_z = total_rpr2_z + total_rpr_z - Z_q_t;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_a_z;
+    }
+}
+
+INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+{
+    Z_values values, *const s = &values;
+    Z_results_rpr results_rpr;
+    Z_results_rpr2 results_rpr2;
+    Z_before(m, w, X, V, s);
+    if (w == 1) {  /* the legs side by side */
+        Z_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            Z_place_rpr(w, &results_rpr, leg, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            Z_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            Z_place_rpr(w, &results_rpr, 0, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        Z_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            Z_place_rpr2(w, &results_rpr2, leg, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rpr2.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            Z_legs_rpr2(m, leg, 0, s, 1, w, 1, &results_rpr2);
+            Z_place_rpr2(w, &results_rpr2, 0, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rpr2.sum[n][k];
+            }
+        }
+    }
+    Z_after(w, s, Z);
+}
+
+INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], Z_of[3*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    Z_run(m, w, X, V, Z_of, t);
+    check(3, w, Z_of, t->overflow);
+    judge(t, w, code);
+    deliver(Z_of, 3, w, code, Z);
+}
+
+/* ---- H: 45 mul, 30 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
+} H_values;
+typedef struct {
+    real entry[3][8], singular[8];
+} H_results_rpr;
+
+INLINE void H_before(size_t w, const real *X, H_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+    }
+}
+
+INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
+    states, size_t count, H_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->entry[2][k] = H_a_2_rpr_z;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void H_place_rpr(size_t w, const H_results_rpr *o, size_t leg, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+{
+    H_values values, *const s = &values;
+    H_results_rpr results_rpr;
+    H_before(w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        H_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            H_place_rpr(w, &results_rpr, leg, leg, H, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            H_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            H_place_rpr(w, &results_rpr, leg, 0, H, t);
+        }
+    }
+}
+
+INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
+{
+    real X_in[3*LANES], H_of[9*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    H_run(m, w, X, H_of, t);
+    check(9, w, H_of, t->overflow);
+    judge(t, w, code);
+    deliver(H_of, 9, w, code, H);
+}
+
+/* ---- required: 240 mul, 169 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
+        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES], f_p_x[LANES], f_p_y[LANES],
+        mu_p_z[LANES], sum[6][LANES];
+} required_values;
+typedef struct {
+    real sum[3][8], entry[3][8], singular[8];
+} required_results_rpr;
+typedef struct {
+    real sum[3][8], singular[8];
+} required_results_rpr2;
+
+INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
+    *A, required_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real J_star_zz = m->J_star_zz;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real m_star = m->m_star;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real omega_z = V_2;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        const real alpha_z = A_2;
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x - R_yx*h_star_y;
+        const real h_star_in_base_y = R_xx*h_star_y + R_yx*h_star_x;
+        /* (P1) centripetal tensor of the platform */
+        const real W_p_t = omega_z*omega_z;
+        /* (E1) acceleration of the platform origin, less gravity */
+        const real a_t_x = t_ddot_x - gravity_x;
+        const real a_t_y = t_ddot_y - gravity_y;
+        /* (E2) inertia force of the platform less its weight */
+        const real f_p_x = a_t_x*m_star - W_p_t*h_star_in_base_x - alpha_z*h_star_in_base_y;
+        const real f_p_y = a_t_y*m_star + alpha_z*h_star_in_base_x - W_p_t*h_star_in_base_y;
+        /* (E3) inertia moment of the platform less that of its weight */
+        const real mu_p_z = J_star_zz*alpha_z + h_star_x*(R_xx*a_t_y - R_yx*a_t_x) -
+            h_star_y*(R_xx*a_t_x + R_yx*a_t_y);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->omega_z[k] = omega_z;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->alpha_z[k] = alpha_z;
+        s->f_p_x[k] = f_p_x;
+        s->f_p_y[k] = f_p_y;
+        s->mu_p_z[k] = mu_p_z;
+    }
+}
+
+INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const required_values
+    *s, size_t states, size_t count, int add, required_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real h_1_rpr_x = m->h_1_rpr_x[i];
+        const real h_1_rpr_y = m->h_1_rpr_y[i];
+        const real h_2_rpr_x = m->h_2_rpr_x[i];
+        const real h_2_rpr_y = m->h_2_rpr_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_rpr_t = omega_z*q_rpr_in_base_y;
+        const real S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x;
+        const real S_dot_rpr_x = t_dot_x - S_dot_rpr_t;
+        const real S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y;
+        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
+        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_rpr = inv_root_1_rpr*px_1_rpr;
+        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rpr = inv_root_1_rpr*py_1_rpr;
+        /* (rpr-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y;
+        const real a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x;
+        /* (rpr-A3) acceleration of the connection point */
+        const real S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z;
+        const real S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z;
+        const real S_ddot_rpr_tip_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y;
+        /* (rpr-A5) acceleration of the connection point left to the joint accelerations */
+        const real rel_rpr_y = S_ddot_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
+        /* (rpr-A7) acceleration of joint 1 */
+        const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
+        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
+        const real g_r1_x = c_1_rpr*g_r0_x + g_r0_y*s_1_rpr;
+        const real g_r1_y = c_1_rpr*g_r0_y - g_r0_x*s_1_rpr;
+        const real acc_2_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y - g_r1_x;
+        const real acc_2_rpr_y = S_ddot_rpr_tip_y - g_r1_y;
+        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
+        const real mu_1_rpr_z = J_group_1_rpr_zz*qdd_1_rpr + acc_2_rpr_y*h_2_rpr_x +
+            g_r1_x*h_1_rpr_y - acc_2_rpr_x*h_2_rpr_y - g_r1_y*h_1_rpr_x;
+        /* (rpr-N5) inertia force of link 2 from its turning about its reference point */
+        const real phi_2_rpr_x = -W_1_rpr_t*h_2_rpr_x - h_2_rpr_y*qdd_1_rpr;
+        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_rpr_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr -
+            inv_root_1_rpr*mu_1_rpr_z;
+        const real c_rpr_in_base_x = -axis_x_x*phi_2_rpr_x - axis_x_y*c_rpr_y;
+        const real c_rpr_in_base_y = axis_x_x*c_rpr_y - axis_x_y*phi_2_rpr_x;
+        /* (E5) moment that actuators and external wrench must give */
+        const real R_a_t = c_rpr_in_base_y*q_rpr_in_base_x - c_rpr_in_base_x*q_rpr_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + c_rpr_in_base_x : c_rpr_in_base_x;  /* total_rpr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rpr_in_base_y : c_rpr_in_base_y;  /* total_rpr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + R_a_t : R_a_t;  /* total_rpr_z */
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->entry[2][k] = H_a_2_rpr_z;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void required_place_rpr(size_t w, const required_results_rpr *o, size_t leg, size_t first,
+    real *H, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void required_legs_rpr2(const prepared *m, size_t leg, size_t legs, const required_values
+    *s, size_t states, size_t count, int add, required_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real g_r0_x_2 = m->g_r0_x_2[i];
+        const real g_r0_y_2 = m->g_r0_y_2[i];
+        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
+        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
+        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
+        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-V1) velocity of the connection point */
+        const real S_dot_rpr2_t = omega_z*q_rpr2_in_base_y;
+        const real S_dot_rpr2_t_2 = omega_z*q_rpr2_in_base_x;
+        const real S_dot_rpr2_x = t_dot_x - S_dot_rpr2_t;
+        const real S_dot_rpr2_y = S_dot_rpr2_t_2 + t_dot_y;
+        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
+        /* (rpr2-V6) rate of joint 1 */
+        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
+            S_dot_rpr2_x*axis_x_y_2);
+        /* (rpr2-V9) centripetal tensor of link 1 */
+        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
+        /* (rpr2-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_rpr2 = inv_root_1_rpr2*px_1_rpr2;
+        /* (rpr2-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rpr2 = inv_root_1_rpr2*py_1_rpr2;
+        /* (rpr2-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_rpr2_x = t_ddot_x - alpha_z*q_rpr2_in_base_y;
+        const real a_p_rpr2_y = t_ddot_y + alpha_z*q_rpr2_in_base_x;
+        /* (rpr2-A3) acceleration of the connection point */
+        const real S_ddot_rpr2_x = a_p_rpr2_x - S_dot_rpr2_t_2*omega_z;
+        const real S_ddot_rpr2_y = a_p_rpr2_y - S_dot_rpr2_t*omega_z;
+        const real S_ddot_rpr2_tip_y = S_ddot_rpr2_y*axis_x_x_2 - S_ddot_rpr2_x*axis_x_y_2;
+        /* (rpr2-A5) acceleration of the connection point left to the joint accelerations */
+        const real rel_rpr2_y = S_ddot_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
+        /* (rpr2-A7) acceleration of joint 1 */
+        const real qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y;
+        /* (rpr2-N3) acceleration of the reference point of link 2, less gravity */
+        const real g_r1_x_2 = c_1_rpr2*g_r0_x_2 + g_r0_y_2*s_1_rpr2;
+        const real g_r1_y_2 = c_1_rpr2*g_r0_y_2 - g_r0_x_2*s_1_rpr2;
+        const real acc_2_rpr2_x = S_ddot_rpr2_x*axis_x_x_2 + S_ddot_rpr2_y*axis_x_y_2 - g_r1_x_2;
+        const real acc_2_rpr2_y = S_ddot_rpr2_tip_y - g_r1_y_2;
+        /* (rpr2-N12) inertia moment of the links that turn with link 1, about their reference points */
+        const real mu_1_rpr2_z = J_group_1_rpr2_zz*qdd_1_rpr2 + acc_2_rpr2_y*h_2_rpr2_x +
+            g_r1_x_2*h_1_rpr2_y - acc_2_rpr2_x*h_2_rpr2_y - g_r1_y_2*h_1_rpr2_x;
+        /* (rpr2-N5) inertia force of link 2 from its turning about its reference point */
+        const real phi_2_rpr2_x = -W_1_rpr2_t*h_2_rpr2_x - h_2_rpr2_y*qdd_1_rpr2;
+        /* (rpr2-N21) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_rpr2_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2 -
+            inv_root_1_rpr2*mu_1_rpr2_z;
+        const real c_rpr2_in_base_x = -axis_x_x_2*phi_2_rpr2_x - axis_x_y_2*c_rpr2_y;
+        const real c_rpr2_in_base_y = axis_x_x_2*c_rpr2_y - axis_x_y_2*phi_2_rpr2_x;
+        /* (E5) moment that actuators and external wrench must give */
+        const real R_a_t_2 = c_rpr2_in_base_y*q_rpr2_in_base_x -
+            c_rpr2_in_base_x*q_rpr2_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + c_rpr2_in_base_x : c_rpr2_in_base_x;  /* total_rpr2_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rpr2_in_base_y : c_rpr2_in_base_y;  /* total_rpr2_y */
+        o->sum[2][k] = add ? o->sum[2][k] + R_a_t_2 : R_a_t_2;  /* total_rpr2_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void required_place_rpr2(size_t w, const required_results_rpr2 *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void required_after(size_t w, const required_values *s, real *required)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real f_p_x = s->f_p_x[k];
+        const real f_p_y = s->f_p_y[k];
+        const real mu_p_z = s->mu_p_z[k];
+        const real total_rpr_x = s->sum[0][k];
+        const real total_rpr_y = s->sum[1][k];
+        const real total_rpr_z = s->sum[2][k];
+        const real total_rpr2_x = s->sum[3][k];
+        const real total_rpr2_y = s->sum[4][k];
+        const real total_rpr2_z = s->sum[5][k];
+        /* (E4) force that actuators and external wrench must give */
+        const real R_t_x = f_p_x - total_rpr2_x - total_rpr_x;
+        const real R_t_y = f_p_y - total_rpr2_y - total_rpr_y;
+        /* (E5) moment that actuators and external wrench must give */
+        const real R_a_z = mu_p_z - total_rpr2_z - total_rpr_z;
+        required[0*w + k] = R_t_x;
+        required[1*w + k] = R_t_y;
+        required[2*w + k] = R_a_z;
+    }
+}
+
+INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+    real *required, real *H, verdict *t)
+{
+    required_values values, *const s = &values;
+    required_results_rpr results_rpr;
+    required_results_rpr2 results_rpr2;
+    required_before(m, w, X, V, A, s);
+    if (w == 1) {  /* the legs side by side */
+        required_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            required_place_rpr(w, &results_rpr, leg, leg, H, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            required_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            required_place_rpr(w, &results_rpr, leg, 0, H, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        required_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            required_place_rpr2(w, &results_rpr2, leg, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rpr2.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            required_legs_rpr2(m, leg, 0, s, 1, w, 1, &results_rpr2);
+            required_place_rpr2(w, &results_rpr2, 0, t);
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rpr2.sum[n][k];
+            }
+        }
+    }
+    required_after(w, s, required);
+}
+
+/* ---- inverse_kinematics: 52 mul, 36 add, 4 div, 4 sqrt, 4 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES];
+} inverse_kinematics_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} inverse_kinematics_results_rpr;
+typedef struct {
+    real entry[2][8], singular[8];
+} inverse_kinematics_results_rpr2;
+
+INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+    }
+}
+
+INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t legs, const
+    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
+            R_yx*rpr_platform_point_y;
+        const real S_rpr_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
+            rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        /* (rpr-K9) displacement of joint 1 */
+        const real q_1_rpr = angle(inv_root_1_rpr*py_1_rpr, inv_root_1_rpr*px_1_rpr);
+        o->entry[0][k] = q_1_rpr;
+        o->entry[1][k] = root_1_rpr;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void inverse_kinematics_place_rpr(size_t w, const inverse_kinematics_results_rpr *o, size_t
+    leg, size_t first, real *q, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        q[(2*leg)*w + k] = o->entry[0][first + k];
+        q[(1 + 2*leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void inverse_kinematics_legs_rpr2(const prepared *m, size_t leg, size_t legs, const
+    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real S_rpr2_x = t_x + R_xx*rpr2_platform_point_x - rpr2_base_point_x -
+            R_yx*rpr2_platform_point_y;
+        const real S_rpr2_y = t_y + R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x -
+            rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        /* (rpr2-K9) displacement of joint 1 */
+        const real q_1_rpr2 = angle(inv_root_1_rpr2*py_1_rpr2, inv_root_1_rpr2*px_1_rpr2);
+        o->entry[0][k] = q_1_rpr2;
+        o->entry[1][k] = root_1_rpr2;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void inverse_kinematics_place_rpr2(size_t w, const inverse_kinematics_results_rpr2 *o,
+    size_t first, real *q, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        q[(6)*w + k] = o->entry[0][first + k];
+        q[(7)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
+    *t)
+{
+    inverse_kinematics_values values, *const s = &values;
+    inverse_kinematics_results_rpr results_rpr;
+    inverse_kinematics_results_rpr2 results_rpr2;
+    inverse_kinematics_before(w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        inverse_kinematics_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            inverse_kinematics_place_rpr(w, &results_rpr, leg, leg, q, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            inverse_kinematics_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            inverse_kinematics_place_rpr(w, &results_rpr, leg, 0, q, t);
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        inverse_kinematics_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            inverse_kinematics_place_rpr2(w, &results_rpr2, leg, q, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 1; ++leg) {
+            inverse_kinematics_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
+            inverse_kinematics_place_rpr2(w, &results_rpr2, 0, q, t);
+        }
+    }
+}
+
+INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
+{
+    real X_in[3*LANES], q_of[8*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    inverse_kinematics_run(m, w, X, q_of, t);
+    check(8, w, q_of, t->overflow);
+    judge(t, w, code);
+    deliver(q_of, 8, w, code, q);
+}
+
+/* ---- joint_rates: 80 mul, 52 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
+        omega_z[LANES];
+} joint_rates_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} joint_rates_results_rpr;
+typedef struct {
+    real entry[2][8], singular[8];
+} joint_rates_results_rpr2;
+
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real omega_z = V_2;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->omega_z[k] = omega_z;
+    }
+}
+
+INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, const
+    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_rpr_x = t_dot_x - omega_z*q_rpr_in_base_y;
+        const real S_dot_rpr_y = t_dot_y + omega_z*q_rpr_in_base_x;
+        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
+        o->entry[0][k] = qd_1_rpr;
+        o->entry[1][k] = S_dot_rpr_tip_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void joint_rates_place_rpr(size_t w, const joint_rates_results_rpr *o, size_t leg, size_t
+    first, real *qd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qd[(2*leg)*w + k] = o->entry[0][first + k];
+        qd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_rates_legs_rpr2(const prepared *m, size_t leg, size_t legs, const
+    joint_rates_values *s, size_t states, size_t count, joint_rates_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-V1) velocity of the connection point */
+        const real S_dot_rpr2_x = t_dot_x - omega_z*q_rpr2_in_base_y;
+        const real S_dot_rpr2_y = t_dot_y + omega_z*q_rpr2_in_base_x;
+        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
+        /* (rpr2-V6) rate of joint 1 */
+        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
+            S_dot_rpr2_x*axis_x_y_2);
+        o->entry[0][k] = qd_1_rpr2;
+        o->entry[1][k] = S_dot_rpr2_tip_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void joint_rates_place_rpr2(size_t w, const joint_rates_results_rpr2 *o, size_t first, real
+    *qd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qd[(6)*w + k] = o->entry[0][first + k];
+        qd[(7)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+    verdict *t)
+{
+    joint_rates_values values, *const s = &values;
+    joint_rates_results_rpr results_rpr;
+    joint_rates_results_rpr2 results_rpr2;
+    joint_rates_before(w, X, V, s);
+    if (w == 1) {  /* the legs side by side */
+        joint_rates_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_rates_place_rpr(w, &results_rpr, leg, leg, qd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_rates_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            joint_rates_place_rpr(w, &results_rpr, leg, 0, qd, t);
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        joint_rates_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            joint_rates_place_rpr2(w, &results_rpr2, leg, qd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 1; ++leg) {
+            joint_rates_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
+            joint_rates_place_rpr2(w, &results_rpr2, 0, qd, t);
+        }
+    }
+}
+
+INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *rates, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], qd_of[8*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    joint_rates_run(m, w, X, V, qd_of, t);
+    check(8, w, qd_of, t->overflow);
+    judge(t, w, code);
+    deliver(qd_of, 8, w, code, rates);
+}
+
+/* ---- joint_accelerations: 132 mul, 84 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
+        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
+} joint_accelerations_values;
+typedef struct {
+    real entry[2][8], singular[8];
+} joint_accelerations_results_rpr;
+typedef struct {
+    real entry[2][8], singular[8];
+} joint_accelerations_results_rpr2;
+
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
+    joint_accelerations_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real omega_z = V_2;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        const real alpha_z = A_2;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->omega_z[k] = omega_z;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->alpha_z[k] = alpha_z;
+    }
+}
+
+INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t legs, const
+    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr
+    *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_rpr_t = omega_z*q_rpr_in_base_y;
+        const real S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x;
+        const real S_dot_rpr_x = t_dot_x - S_dot_rpr_t;
+        const real S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y;
+        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
+        /* (rpr-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y;
+        const real a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x;
+        /* (rpr-A3) acceleration of the connection point */
+        const real S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z;
+        const real S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z;
+        /* (rpr-A5) acceleration of the connection point left to the joint accelerations */
+        const real rel_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y +
+            qd_1_rpr*qd_1_rpr*root_1_rpr;
+        const real rel_rpr_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y -
+            2*S_dot_rpr_tip_x*qd_1_rpr;
+        /* (rpr-A7) acceleration of joint 1 */
+        const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
+        o->entry[0][k] = qdd_1_rpr;
+        o->entry[1][k] = rel_rpr_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void joint_accelerations_place_rpr(size_t w, const joint_accelerations_results_rpr *o,
+    size_t leg, size_t first, real *qdd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qdd[(2*leg)*w + k] = o->entry[0][first + k];
+        qdd[(1 + 2*leg)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_accelerations_legs_rpr2(const prepared *m, size_t leg, size_t legs, const
+    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_rpr2
+    *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-V1) velocity of the connection point */
+        const real S_dot_rpr2_t = omega_z*q_rpr2_in_base_y;
+        const real S_dot_rpr2_t_2 = omega_z*q_rpr2_in_base_x;
+        const real S_dot_rpr2_x = t_dot_x - S_dot_rpr2_t;
+        const real S_dot_rpr2_y = S_dot_rpr2_t_2 + t_dot_y;
+        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
+        /* (rpr2-V6) rate of joint 1 */
+        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
+            S_dot_rpr2_x*axis_x_y_2);
+        /* (rpr2-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_rpr2_x = t_ddot_x - alpha_z*q_rpr2_in_base_y;
+        const real a_p_rpr2_y = t_ddot_y + alpha_z*q_rpr2_in_base_x;
+        /* (rpr2-A3) acceleration of the connection point */
+        const real S_ddot_rpr2_x = a_p_rpr2_x - S_dot_rpr2_t_2*omega_z;
+        const real S_ddot_rpr2_y = a_p_rpr2_y - S_dot_rpr2_t*omega_z;
+        /* (rpr2-A5) acceleration of the connection point left to the joint accelerations */
+        const real rel_rpr2_x = S_ddot_rpr2_x*axis_x_x_2 + S_ddot_rpr2_y*axis_x_y_2 +
+            qd_1_rpr2*qd_1_rpr2*root_1_rpr2;
+        const real rel_rpr2_y = S_ddot_rpr2_y*axis_x_x_2 - S_ddot_rpr2_x*axis_x_y_2 -
+            2*S_dot_rpr2_tip_x*qd_1_rpr2;
+        /* (rpr2-A7) acceleration of joint 1 */
+        const real qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y;
+        o->entry[0][k] = qdd_1_rpr2;
+        o->entry[1][k] = rel_rpr2_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void joint_accelerations_place_rpr2(size_t w, const joint_accelerations_results_rpr2 *o,
+    size_t first, real *qdd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qdd[(6)*w + k] = o->entry[0][first + k];
+        qdd[(7)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd, verdict *t)
+{
+    joint_accelerations_values values, *const s = &values;
+    joint_accelerations_results_rpr results_rpr;
+    joint_accelerations_results_rpr2 results_rpr2;
+    joint_accelerations_before(w, X, V, A, s);
+    if (w == 1) {  /* the legs side by side */
+        joint_accelerations_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_accelerations_place_rpr(w, &results_rpr, leg, leg, qdd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_accelerations_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            joint_accelerations_place_rpr(w, &results_rpr, leg, 0, qdd, t);
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        joint_accelerations_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            joint_accelerations_place_rpr2(w, &results_rpr2, leg, qdd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 1; ++leg) {
+            joint_accelerations_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
+            joint_accelerations_place_rpr2(w, &results_rpr2, 0, qdd, t);
+        }
+    }
+}
+
+INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *accelerations, int *code)
+{
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of[8*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    A = take(3, w, A, A_in, t);
+    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
+    check(8, w, qdd_of, t->overflow);
+    judge(t, w, code);
+    deliver(qdd_of, 8, w, code, accelerations);
+}
+
+/* ---- legs: 216 mul, 140 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], t_dot_x[LANES], t_dot_y[LANES],
+        omega_z[LANES], t_ddot_x[LANES], t_ddot_y[LANES], alpha_z[LANES];
+} legs_values;
+typedef struct {
+    real entry[4][8], singular[8];
+} legs_results_rpr;
+typedef struct {
+    real entry[2][8], singular[8];
+} legs_results_rpr2;
+
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real omega_z = V_2;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        const real alpha_z = A_2;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->omega_z[k] = omega_z;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->alpha_z[k] = alpha_z;
+    }
+}
+
+INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
+    states, size_t count, legs_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real J_group_1_rpr_zz = m->J_group_1_rpr_zz[i];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real h_1_rpr_x = m->h_1_rpr_x[i];
+        const real h_1_rpr_y = m->h_1_rpr_y[i];
+        const real h_2_rpr_x = m->h_2_rpr_x[i];
+        const real h_2_rpr_y = m->h_2_rpr_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_link2_mass = m->rpr_link2_mass[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (rpr-V1) velocity of the connection point */
+        const real S_dot_rpr_t = omega_z*q_rpr_in_base_y;
+        const real S_dot_rpr_t_2 = omega_z*q_rpr_in_base_x;
+        const real S_dot_rpr_x = t_dot_x - S_dot_rpr_t;
+        const real S_dot_rpr_y = S_dot_rpr_t_2 + t_dot_y;
+        const real S_dot_rpr_tip_x = S_dot_rpr_x*axis_x_x + S_dot_rpr_y*axis_x_y;
+        /* (rpr-V6) rate of joint 1 */
+        const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
+        /* (rpr-V9) centripetal tensor of link 1 */
+        const real W_1_rpr_t = qd_1_rpr*qd_1_rpr;
+        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_rpr = inv_root_1_rpr*px_1_rpr;
+        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rpr = inv_root_1_rpr*py_1_rpr;
+        /* (rpr-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_rpr_x = t_ddot_x - alpha_z*q_rpr_in_base_y;
+        const real a_p_rpr_y = t_ddot_y + alpha_z*q_rpr_in_base_x;
+        /* (rpr-A3) acceleration of the connection point */
+        const real S_ddot_rpr_x = a_p_rpr_x - S_dot_rpr_t_2*omega_z;
+        const real S_ddot_rpr_y = a_p_rpr_y - S_dot_rpr_t*omega_z;
+        const real S_ddot_rpr_tip_y = S_ddot_rpr_y*axis_x_x - S_ddot_rpr_x*axis_x_y;
+        /* (rpr-A5) acceleration of the connection point left to the joint accelerations */
+        const real rel_rpr_y = S_ddot_rpr_tip_y - 2*S_dot_rpr_tip_x*qd_1_rpr;
+        /* (rpr-A7) acceleration of joint 1 */
+        const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
+        /* (rpr-N3) acceleration of the reference point of link 2, less gravity */
+        const real g_r1_x = c_1_rpr*g_r0_x + g_r0_y*s_1_rpr;
+        const real g_r1_y = c_1_rpr*g_r0_y - g_r0_x*s_1_rpr;
+        const real acc_2_rpr_x = S_ddot_rpr_x*axis_x_x + S_ddot_rpr_y*axis_x_y - g_r1_x;
+        const real acc_2_rpr_y = S_ddot_rpr_tip_y - g_r1_y;
+        /* (rpr-N12) inertia moment of the links that turn with link 1, about their reference points */
+        const real mu_1_rpr_z = J_group_1_rpr_zz*qdd_1_rpr + acc_2_rpr_y*h_2_rpr_x +
+            g_r1_x*h_1_rpr_y - acc_2_rpr_x*h_2_rpr_y - g_r1_y*h_1_rpr_x;
+        /* (rpr-N21) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_rpr_y = W_1_rpr_t*h_2_rpr_y - h_2_rpr_x*qdd_1_rpr -
+            inv_root_1_rpr*mu_1_rpr_z;
+        /* (rpr-N26) leg force on the platform without actuation, the last link's mass included */
+        const real c_true_rpr_x = W_1_rpr_t*h_2_rpr_x + h_2_rpr_y*qdd_1_rpr -
+            acc_2_rpr_x*rpr_link2_mass;
+        const real c_true_rpr_y = c_rpr_y - acc_2_rpr_y*rpr_link2_mass;
+        const real c_true_rpr_in_base_x = axis_x_x*c_true_rpr_x - axis_x_y*c_true_rpr_y;
+        const real c_true_rpr_in_base_y = axis_x_x*c_true_rpr_y + axis_x_y*c_true_rpr_x;
+        o->entry[0][k] = c_true_rpr_in_base_x;
+        o->entry[1][k] = c_true_rpr_in_base_y;
+        o->entry[2][k] = axis_x_x;
+        o->entry[3][k] = axis_x_y;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void legs_place_rpr(size_t w, const legs_results_rpr *o, size_t leg, size_t first, real
+    *leg_force, real *drive, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        leg_force[(3*leg)*w + k] = o->entry[0][first + k];
+        leg_force[(1 + 3*leg)*w + k] = o->entry[1][first + k];
+        drive[(3*leg)*w + k] = o->entry[2][first + k];
+        drive[(1 + 3*leg)*w + k] = o->entry[3][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void legs_legs_rpr2(const prepared *m, size_t leg, size_t legs, const legs_values *s,
+    size_t states, size_t count, legs_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real J_group_1_rpr2_zz = m->J_group_1_rpr2_zz[i];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real g_r0_x_2 = m->g_r0_x_2[i];
+        const real g_r0_y_2 = m->g_r0_y_2[i];
+        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
+        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
+        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
+        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_link2_mass = m->rpr2_link2_mass[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real q_rpr2_in_base_x = R_xx*rpr2_platform_point_x - R_yx*rpr2_platform_point_y;
+        const real q_rpr2_in_base_y = R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x;
+        const real S_rpr2_x = q_rpr2_in_base_x + t_x - rpr2_base_point_x;
+        const real S_rpr2_y = q_rpr2_in_base_y + t_y - rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        const real axis_x_x_2 = S_rpr2_x*inv_root_1_rpr2;
+        const real axis_x_y_2 = S_rpr2_y*inv_root_1_rpr2;
+        /* (rpr2-V1) velocity of the connection point */
+        const real S_dot_rpr2_t = omega_z*q_rpr2_in_base_y;
+        const real S_dot_rpr2_t_2 = omega_z*q_rpr2_in_base_x;
+        const real S_dot_rpr2_x = t_dot_x - S_dot_rpr2_t;
+        const real S_dot_rpr2_y = S_dot_rpr2_t_2 + t_dot_y;
+        const real S_dot_rpr2_tip_x = S_dot_rpr2_x*axis_x_x_2 + S_dot_rpr2_y*axis_x_y_2;
+        /* (rpr2-V6) rate of joint 1 */
+        const real qd_1_rpr2 = inv_root_1_rpr2*(S_dot_rpr2_y*axis_x_x_2 -
+            S_dot_rpr2_x*axis_x_y_2);
+        /* (rpr2-V9) centripetal tensor of link 1 */
+        const real W_1_rpr2_t = qd_1_rpr2*qd_1_rpr2;
+        /* (rpr2-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_rpr2 = inv_root_1_rpr2*px_1_rpr2;
+        /* (rpr2-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rpr2 = inv_root_1_rpr2*py_1_rpr2;
+        /* (rpr2-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_rpr2_x = t_ddot_x - alpha_z*q_rpr2_in_base_y;
+        const real a_p_rpr2_y = t_ddot_y + alpha_z*q_rpr2_in_base_x;
+        /* (rpr2-A3) acceleration of the connection point */
+        const real S_ddot_rpr2_x = a_p_rpr2_x - S_dot_rpr2_t_2*omega_z;
+        const real S_ddot_rpr2_y = a_p_rpr2_y - S_dot_rpr2_t*omega_z;
+        const real S_ddot_rpr2_tip_y = S_ddot_rpr2_y*axis_x_x_2 - S_ddot_rpr2_x*axis_x_y_2;
+        /* (rpr2-A5) acceleration of the connection point left to the joint accelerations */
+        const real rel_rpr2_y = S_ddot_rpr2_tip_y - 2*S_dot_rpr2_tip_x*qd_1_rpr2;
+        /* (rpr2-A7) acceleration of joint 1 */
+        const real qdd_1_rpr2 = inv_root_1_rpr2*rel_rpr2_y;
+        /* (rpr2-N3) acceleration of the reference point of link 2, less gravity */
+        const real g_r1_x_2 = c_1_rpr2*g_r0_x_2 + g_r0_y_2*s_1_rpr2;
+        const real g_r1_y_2 = c_1_rpr2*g_r0_y_2 - g_r0_x_2*s_1_rpr2;
+        const real acc_2_rpr2_x = S_ddot_rpr2_x*axis_x_x_2 + S_ddot_rpr2_y*axis_x_y_2 - g_r1_x_2;
+        const real acc_2_rpr2_y = S_ddot_rpr2_tip_y - g_r1_y_2;
+        /* (rpr2-N12) inertia moment of the links that turn with link 1, about their reference points */
+        const real mu_1_rpr2_z = J_group_1_rpr2_zz*qdd_1_rpr2 + acc_2_rpr2_y*h_2_rpr2_x +
+            g_r1_x_2*h_1_rpr2_y - acc_2_rpr2_x*h_2_rpr2_y - g_r1_y_2*h_1_rpr2_x;
+        /* (rpr2-N21) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_rpr2_y = W_1_rpr2_t*h_2_rpr2_y - h_2_rpr2_x*qdd_1_rpr2 -
+            inv_root_1_rpr2*mu_1_rpr2_z;
+        /* (rpr2-N26) leg force on the platform without actuation, the last link's mass included */
+        const real c_true_rpr2_x = W_1_rpr2_t*h_2_rpr2_x + h_2_rpr2_y*qdd_1_rpr2 -
+            acc_2_rpr2_x*rpr2_link2_mass;
+        const real c_true_rpr2_y = c_rpr2_y - acc_2_rpr2_y*rpr2_link2_mass;
+        const real c_true_rpr2_in_base_x = axis_x_x_2*c_true_rpr2_x - axis_x_y_2*c_true_rpr2_y;
+        const real c_true_rpr2_in_base_y = axis_x_x_2*c_true_rpr2_y + axis_x_y_2*c_true_rpr2_x;
+        o->entry[0][k] = c_true_rpr2_in_base_x;
+        o->entry[1][k] = c_true_rpr2_in_base_y;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void legs_place_rpr2(size_t w, const legs_results_rpr2 *o, size_t first, real *leg_force,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        leg_force[(9)*w + k] = o->entry[0][first + k];
+        leg_force[(10)*w + k] = o->entry[1][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+    real *leg_force, real *drive, verdict *t)
+{
+    legs_values values, *const s = &values;
+    legs_results_rpr results_rpr;
+    legs_results_rpr2 results_rpr2;
+    clear(leg_force, 12*w);
+    clear(drive, 9*w);
+    legs_before(w, X, V, A, s);
+    if (w == 1) {  /* the legs side by side */
+        legs_legs_rpr(m, 0, 1, s, 0, 3, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            legs_place_rpr(w, &results_rpr, leg, leg, leg_force, drive, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            legs_legs_rpr(m, leg, 0, s, 1, w, &results_rpr);
+            legs_place_rpr(w, &results_rpr, leg, 0, leg_force, drive, t);
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        legs_legs_rpr2(m, 0, 1, s, 0, 1, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            legs_place_rpr2(w, &results_rpr2, leg, leg_force, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 1; ++leg) {
+            legs_legs_rpr2(m, leg, 0, s, 1, w, &results_rpr2);
+            legs_place_rpr2(w, &results_rpr2, 0, leg_force, t);
+        }
+    }
+}
+
+/* ---- potential: 108 mul, 83 add, 4 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], potential_t[LANES], sum[2][LANES];
+} potential_values;
+typedef struct {
+    real sum[1][8], singular[8];
+} potential_results_rpr;
+typedef struct {
+    real sum[1][8], singular[8];
+} potential_results_rpr2;
+
+INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real m_star = m->m_star;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        /* (V1) potential energy */
+        const real potential_t = gravity_x*(R_xx*h_star_x + m_star*t_x - R_yx*h_star_y) +
+            gravity_y*(R_xx*h_star_y + R_yx*h_star_x + m_star*t_y);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        s->potential_t[k] = potential_t;
+    }
+}
+
+INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const potential_values
+    *s, size_t states, size_t count, int add, potential_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_rpr_r0_x = m->b_rpr_r0_x[i];
+        const real b_rpr_r0_y = m->b_rpr_r0_y[i];
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real h_1_rpr_x = m->h_1_rpr_x[i];
+        const real h_1_rpr_y = m->h_1_rpr_y[i];
+        const real h_2_rpr_x = m->h_2_rpr_x[i];
+        const real h_2_rpr_y = m->h_2_rpr_y[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_link1_mass = m->rpr_link1_mass[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        const real size_rpr = m->size_rpr[i];
+        const real size_rpr_t_4 = m->size_rpr_t_4[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
+            R_yx*rpr_platform_point_y;
+        const real S_rpr_y = t_y + R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x -
+            rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        /* (rpr-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_rpr = inv_root_1_rpr*px_1_rpr;
+        /* (rpr-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rpr = inv_root_1_rpr*py_1_rpr;
+        /* (V1) potential energy */
+        const real potential_t_3 = (c_1_rpr*g_r0_x + g_r0_y*s_1_rpr)*(h_1_rpr_x + h_2_rpr_x +
+            rpr_link1_mass*(b_rpr_r0_x*c_1_rpr + b_rpr_r0_y*s_1_rpr)) + (c_1_rpr*g_r0_y -
+            g_r0_x*s_1_rpr)*(h_1_rpr_y + h_2_rpr_y + rpr_link1_mass*(b_rpr_r0_y*c_1_rpr -
+            b_rpr_r0_x*s_1_rpr));
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rpr */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+    }
+}
+
+INLINE void potential_place_rpr(size_t w, const potential_results_rpr *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void potential_legs_rpr2(const prepared *m, size_t leg, size_t legs, const potential_values
+    *s, size_t states, size_t count, int add, potential_results_rpr2 *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_rpr2_r0_x = m->b_rpr2_r0_x[i];
+        const real b_rpr2_r0_y = m->b_rpr2_r0_y[i];
+        const real branch_1_rpr2 = m->branch_1_rpr2[i];
+        const real g_r0_x_2 = m->g_r0_x_2[i];
+        const real g_r0_y_2 = m->g_r0_y_2[i];
+        const real h_1_rpr2_x = m->h_1_rpr2_x[i];
+        const real h_1_rpr2_y = m->h_1_rpr2_y[i];
+        const real h_2_rpr2_x = m->h_2_rpr2_x[i];
+        const real h_2_rpr2_y = m->h_2_rpr2_y[i];
+        const real rpr2_base_frame_xx = m->rpr2_base_frame_xx[i];
+        const real rpr2_base_frame_xy = m->rpr2_base_frame_xy[i];
+        const real rpr2_base_frame_yx = m->rpr2_base_frame_yx[i];
+        const real rpr2_base_frame_yy = m->rpr2_base_frame_yy[i];
+        const real rpr2_base_point_x = m->rpr2_base_point_x[i];
+        const real rpr2_base_point_y = m->rpr2_base_point_y[i];
+        const real rpr2_link1_mass = m->rpr2_link1_mass[i];
+        const real rpr2_platform_point_x = m->rpr2_platform_point_x[i];
+        const real rpr2_platform_point_y = m->rpr2_platform_point_y[i];
+        const real size_rpr2 = m->size_rpr2[i];
+        const real size_rpr2_t_4 = m->size_rpr2_t_4[i];
+        /* (rpr2-K1) from the base point to the connection point */
+        const real S_rpr2_x = t_x + R_xx*rpr2_platform_point_x - rpr2_base_point_x -
+            R_yx*rpr2_platform_point_y;
+        const real S_rpr2_y = t_y + R_xx*rpr2_platform_point_y + R_yx*rpr2_platform_point_x -
+            rpr2_base_point_y;
+        /* (rpr2-K2) component along the reference direction */
+        const real px_1_rpr2 = S_rpr2_x*rpr2_base_frame_xx + S_rpr2_y*rpr2_base_frame_yx;
+        /* (rpr2-K3) component across the reference direction */
+        const real py_1_rpr2 = S_rpr2_x*rpr2_base_frame_xy + S_rpr2_y*rpr2_base_frame_yy;
+        /* (rpr2-K5) squared amplitude */
+        const real rho2_1_rpr2 = px_1_rpr2*px_1_rpr2 + py_1_rpr2*py_1_rpr2;
+        /* (rpr2-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr2 = branch_1_rpr2*root(rho2_1_rpr2);
+        /* (rpr2-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr2 = 1/root_1_rpr2;
+        /* (rpr2-K7) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_rpr2 = inv_root_1_rpr2*px_1_rpr2;
+        /* (rpr2-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rpr2 = inv_root_1_rpr2*py_1_rpr2;
+        /* (V1) potential energy */
+        const real potential_t_2 = (c_1_rpr2*g_r0_x_2 + g_r0_y_2*s_1_rpr2)*(h_1_rpr2_x +
+            h_2_rpr2_x + rpr2_link1_mass*(b_rpr2_r0_x*c_1_rpr2 + b_rpr2_r0_y*s_1_rpr2)) +
+            (c_1_rpr2*g_r0_y_2 - g_r0_x_2*s_1_rpr2)*(h_1_rpr2_y + h_2_rpr2_y +
+            rpr2_link1_mass*(b_rpr2_r0_y*c_1_rpr2 - b_rpr2_r0_x*s_1_rpr2));
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rpr2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr2) > TOLERANCE*TOLERANCE*size_rpr2_t_4) +
+            UNLESS(magnitude(root_1_rpr2) > TOLERANCE*size_rpr2);
+    }
+}
+
+INLINE void potential_place_rpr2(size_t w, const potential_results_rpr2 *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real potential_t = s->potential_t[k];
+        const real total_rpr = s->sum[0][k];
+        const real total_rpr2 = s->sum[1][k];
+        /* (V1) potential energy */
+        const real potential_ = -potential_t - total_rpr - total_rpr2;
+        potential[0*w + k] = potential_;
+    }
+}
+
+INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+{
+    potential_values values, *const s = &values;
+    potential_results_rpr results_rpr;
+    potential_results_rpr2 results_rpr2;
+    potential_before(m, w, X, s);
+    if (w == 1) {  /* the legs side by side */
+        potential_legs_rpr(m, 0, 1, s, 0, 3, 0, &results_rpr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            potential_place_rpr(w, &results_rpr, leg, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            potential_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            potential_place_rpr(w, &results_rpr, 0, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        potential_legs_rpr2(m, 0, 1, s, 0, 1, 0, &results_rpr2);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            potential_place_rpr2(w, &results_rpr2, leg, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rpr2.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr2.sum, 0, sizeof results_rpr2.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            potential_legs_rpr2(m, leg, 0, s, 1, w, 1, &results_rpr2);
+            potential_place_rpr2(w, &results_rpr2, 0, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rpr2.sum[n][k];
+            }
+        }
+    }
+    potential_after(w, s, potential);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -3657,16 +3747,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2};  /* on which drives act */
     enum { N = 3, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES];
     real force[3*LANES], H[9*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(A, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    A = take(3, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -3677,7 +3767,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, tau);
 }
@@ -3687,26 +3777,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 3, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES];
     real M[9*LANES], Z[3*LANES], H[9*LANES];
     real force[3*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(tau, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    tau = take(3, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 3; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[3*k + j];
+                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 3; ++i) {
@@ -3718,7 +3808,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, A);
 }
@@ -3728,14 +3818,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int planar_4rpr_free_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 3);
+    const int code = all_finite(A, 3) ? PLANAR_4RPR_FREE_OK : PLANAR_4RPR_FREE_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 3; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? PLANAR_4RPR_FREE_OK : PLANAR_4RPR_FREE_INVALID;
+    deliver(A, 3, 1, &code, completed);
+    return code;
 }
 
 int planar_4rpr_free_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -3746,7 +3834,7 @@ int planar_4rpr_free_leg_reactions(const prepared *m, const real *X, const real 
     verdict values, *const t = &values;
     int code = planar_4rpr_free_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != PLANAR_4RPR_FREE_OK) {
-        deliver(leg_force, 12, 1, &code, forces);
+        refuse(12, forces);
         return code;
     }
     start(1, t);
@@ -3756,7 +3844,7 @@ int planar_4rpr_free_leg_reactions(const prepared *m, const real *X, const real 
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 12, 1, t);
+    check(12, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 12, 1, &code, forces);
     return code;
@@ -3768,8 +3856,8 @@ int planar_4rpr_free_energy(const prepared *m, const real *X, const real *V, rea
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 3, 1, t);
-    check_input(V, 3, 1, t);
+    check(3, 1, X, t->invalid);
+    check(3, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 3; ++i) {
@@ -3777,7 +3865,7 @@ int planar_4rpr_free_energy(const prepared *m, const real *X, const real *V, rea
             energies[0] += V[i]*M[i*3 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

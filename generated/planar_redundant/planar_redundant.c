@@ -11,13 +11,16 @@ typedef planar_redundant_real real;
 typedef planar_redundant_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? PLANAR_REDUNDANT_INVALID
+            : t->diverged[k] > 0 ? PLANAR_REDUNDANT_NOT_CONVERGED
             : t->unreachable[k] > 0 ? PLANAR_REDUNDANT_UNREACHABLE
             : t->singular[k] > 0 ? PLANAR_REDUNDANT_SINGULAR
-            : t->diverged[k] > 0 ? PLANAR_REDUNDANT_NOT_CONVERGED
             : t->overflow[k] > 0 ? PLANAR_REDUNDANT_INVALID : PLANAR_REDUNDANT_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == PLANAR_REDUNDANT_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != PLANAR_REDUNDANT_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -714,6 +734,320 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     return PLANAR_REDUNDANT_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 3; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 4  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[4][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 4; ++j) {
+            a[i*5 + j] = h[j*n + i];
+        }
+        a[i*5 + 4] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 435 mul, 299 add, 6 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -733,12 +1067,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     dynamics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
-        const real V_0 = V[4*k + 0];
-        const real V_1 = V[4*k + 1];
-        const real V_2 = V[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         const real Z_p_t = m->Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
         const real gravity_x = m->gravity_x;
@@ -780,8 +1114,9 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     }
 }
 
-INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, const real *X, const real *V, dynamics_results_prrr *o)
+INLINE void dynamics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
+    dynamics_values *s, size_t states, size_t count, int add, const real *X, const real *V,
+    dynamics_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -828,8 +1163,8 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
-        const real yd_1_prrr = V[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        const real yd_1_prrr = V[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -1045,15 +1380,15 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real w_2_prrr_t_2 = axis_y_prrr_axes3_in_base_x*inv_r_2_prrr_r0_y;
         /* (M9) moment of the column's unit force about the platform origin */
         const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
-        o->sum[0][k] = Q_prrr_t_5;  /* total_prrr_xx */
-        o->sum[1][k] = Q_prrr_t_6;  /* total_prrr_xy */
-        o->sum[2][k] = Q_prrr_t_7;  /* total_prrr_yy */
-        o->sum[3][k] = M_ta_t;  /* total_prrr_xz */
-        o->sum[4][k] = M_ta_t_2;  /* total_prrr_yz */
-        o->sum[5][k] = M_aa_t;  /* total_prrr_zz */
-        o->sum[6][k] = U_prrr_in_base_x;  /* total_prrr_x */
-        o->sum[7][k] = U_prrr_in_base_y;  /* total_prrr_y */
-        o->sum[8][k] = Z_a_t;  /* total_prrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_prrr_t_5 : Q_prrr_t_5;  /* total_prrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_prrr_t_6 : Q_prrr_t_6;  /* total_prrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_prrr_t_7 : Q_prrr_t_7;  /* total_prrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_prrr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_prrr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_prrr_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_prrr_in_base_x : U_prrr_in_base_x;  /* total_prrr_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_prrr_in_base_y : U_prrr_in_base_y;  /* total_prrr_y */
+        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t : Z_a_t;  /* total_prrr_z */
         o->entry[0][k] = P_1_prrr_o;
         o->entry[1][k] = d_P_1_prrr_in_base_x;
         o->entry[2][k] = d_P_1_prrr_in_base_x;
@@ -1067,9 +1402,9 @@ INLINE void dynamics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         o->entry[10][k] = w_2_prrr_t_2;
         o->entry[11][k] = H_a_2_prrr_z;
         o->entry[12][k] = d1_qdd_2_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -1096,7 +1431,7 @@ INLINE void dynamics_place_prrr(size_t w, const dynamics_results_prrr *o, size_t
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rrr *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1294,21 +1629,21 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         const real w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y;
         /* (M10) moment of the column's unit force about the platform origin */
         const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
-        o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = M_ta_t_3;  /* total_rrr_xz */
-        o->sum[4][k] = M_ta_t_4;  /* total_rrr_yz */
-        o->sum[5][k] = M_aa_t_2;  /* total_rrr_zz */
-        o->sum[6][k] = U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[7][k] = U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[8][k] = Z_a_t_2;  /* total_rrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr_z */
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -1391,40 +1726,46 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     clear(H, 16*w);
     dynamics_before(m, w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_prrr(m, 0, 1, s, 0, 1, X, V, &results_prrr);
+        dynamics_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, V, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             dynamics_place_prrr(w, &results_prrr, leg, M, Z, H, t);
         }
         for (size_t n = 0; n < 9; ++n) {
-            s->sum[n][0] = total(results_prrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_prrr(m, leg, 0, s, 1, w, X, V, &results_prrr);
+            dynamics_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, V, &results_prrr);
             dynamics_place_prrr(w, &results_prrr, 0, M, Z, H, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_prrr.sum[n][k] : results_prrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
+        dynamics_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             dynamics_place_rrr(w, &results_rrr, leg, leg, H, t);
         }
         for (size_t n = 0; n < 9; ++n) {
-            s->sum[9 + n][0] = total(results_rrr.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[9 + n][k] = total(results_rrr.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             dynamics_place_rrr(w, &results_rrr, leg, 0, H, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[9 + n][k] = leg ? s->sum[9 + n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[9 + n][k] = results_rrr.sum[n][k];
             }
         }
     }
@@ -1434,15 +1775,15 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[16*LANES], Z_of[4*LANES], H_of[16*LANES];
+    real X_in[4*LANES], V_in[4*LANES], M_of[16*LANES], Z_of[4*LANES], H_of[16*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
-    check_input(V, 4, w, t);
+    X = take(4, w, X, X_in, t);
+    V = take(4, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 16, w, t);
-    check_output(Z_of, 4, w, t);
-    check_output(H_of, 16, w, t);
+    check(16, w, M_of, t->overflow);
+    check(4, w, Z_of, t->overflow);
+    check(16, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 16, w, code, M);
     deliver(Z_of, 4, w, code, Z);
@@ -1464,9 +1805,9 @@ typedef struct {
 INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         /* X: named entries */
@@ -1486,8 +1827,8 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
     }
 }
 
-INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, const real *X, M_results_prrr *o)
+INLINE void M_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const M_values *s,
+    size_t states, size_t count, int add, const real *X, M_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1525,7 +1866,7 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -1650,12 +1991,12 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y*(d0_G_prrr_t*r_2_prrr_r0_x -
             d0_Gamma_2_prrr);
         const real d0_P_1_prrr = d0_Gamma_1_prrr - d0_P_1_prrr_t;
-        o->sum[0][k] = Q_prrr_t_5;  /* total_prrr_xx */
-        o->sum[1][k] = Q_prrr_t_6;  /* total_prrr_xy */
-        o->sum[2][k] = Q_prrr_t_7;  /* total_prrr_yy */
-        o->sum[3][k] = M_ta_t;  /* total_prrr_xz */
-        o->sum[4][k] = M_ta_t_2;  /* total_prrr_yz */
-        o->sum[5][k] = M_aa_t;  /* total_prrr_zz */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_prrr_t_5 : Q_prrr_t_5;  /* total_prrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_prrr_t_6 : Q_prrr_t_6;  /* total_prrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_prrr_t_7 : Q_prrr_t_7;  /* total_prrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_prrr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_prrr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_prrr_zz */
         o->entry[0][k] = d_P_1_prrr_in_base_x;
         o->entry[1][k] = d_P_1_prrr_in_base_x;
         o->entry[2][k] = d_P_1_prrr_in_base_y;
@@ -1663,9 +2004,9 @@ INLINE void M_legs_prrr(const prepared *m, size_t leg, size_t legs, const M_valu
         o->entry[4][k] = M_ya_1_prrr_z;
         o->entry[5][k] = M_ya_1_prrr_z;
         o->entry[6][k] = d0_P_1_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -1685,7 +2026,7 @@ INLINE void M_place_prrr(size_t w, const M_results_prrr *o, size_t first, real *
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rrr *o)
+    states, size_t count, int add, M_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1800,15 +2141,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_ta_t_4 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t_2 = M_ta_t_3*q_rrr_in_base_y + M_ta_t_4*q_rrr_in_base_x;
-        o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = M_ta_t_3;  /* total_rrr_xz */
-        o->sum[4][k] = M_ta_t_4;  /* total_rrr_yz */
-        o->sum[5][k] = M_aa_t_2;  /* total_rrr_zz */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr_zz */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -1867,40 +2208,46 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_rrr results_rrr;
     M_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
-        M_legs_prrr(m, 0, 1, s, 0, 1, X, &results_prrr);
+        M_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             M_place_prrr(w, &results_prrr, leg, M, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_prrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_prrr(m, leg, 0, s, 1, w, X, &results_prrr);
+            M_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, &results_prrr);
             M_place_prrr(w, &results_prrr, 0, M, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_prrr.sum[n][k] : results_prrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
+        M_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             M_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[6 + n][0] = total(results_rrr.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[6 + n][k] = total(results_rrr.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             M_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[6 + n][k] = leg ? s->sum[6 + n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[6 + n][k] = results_rrr.sum[n][k];
             }
         }
     }
@@ -1909,12 +2256,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[16*LANES];
+    real X_in[4*LANES], M_of[16*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
+    X = take(4, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 16, w, t);
+    check(16, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 16, w, code, M);
 }
@@ -1934,12 +2281,12 @@ typedef struct {
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
-        const real V_0 = V[4*k + 0];
-        const real V_1 = V[4*k + 1];
-        const real V_2 = V[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         const real Z_p_t = m->Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
         const real gravity_x = m->gravity_x;
@@ -1976,8 +2323,8 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     }
 }
 
-INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, const real *X, const real *V, Z_results_prrr *o)
+INLINE void Z_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const Z_values *s,
+    size_t states, size_t count, int add, const real *X, const real *V, Z_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2017,8 +2364,8 @@ INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
-        const real yd_1_prrr = V[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        const real yd_1_prrr = V[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -2154,13 +2501,13 @@ INLINE void Z_legs_prrr(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real P_1_prrr_o_t = G_prrr_o_t*axis_y_prrr_axes3_r1_x +
             G_prrr_o_t_2*axis_y_prrr_axes3_r1_y;
         const real P_1_prrr_o = T_1_prrr_o_x - P_1_prrr_o_t;
-        o->sum[0][k] = U_prrr_in_base_x;  /* total_prrr_x */
-        o->sum[1][k] = U_prrr_in_base_y;  /* total_prrr_y */
-        o->sum[2][k] = Z_a_t;  /* total_prrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + U_prrr_in_base_x : U_prrr_in_base_x;  /* total_prrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_prrr_in_base_y : U_prrr_in_base_y;  /* total_prrr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_prrr_z */
         o->entry[0][k] = P_1_prrr_o;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -2174,7 +2521,7 @@ INLINE void Z_place_prrr(size_t w, const Z_results_prrr *o, size_t first, real *
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rrr *o)
+    states, size_t count, int add, Z_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2330,12 +2677,12 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
             axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
         /* (M7) rotational part of Z */
         const real Z_a_t_2 = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = Z_a_t_2;  /* total_rrr_z */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2377,40 +2724,46 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_rrr results_rrr;
     Z_before(m, w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_prrr(m, 0, 1, s, 0, 1, X, V, &results_prrr);
+        Z_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, V, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             Z_place_prrr(w, &results_prrr, leg, Z, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_prrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_prrr(m, leg, 0, s, 1, w, X, V, &results_prrr);
+            Z_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, V, &results_prrr);
             Z_place_prrr(w, &results_prrr, 0, Z, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_prrr.sum[n][k] : results_prrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
+        Z_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             Z_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rrr.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rrr.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             Z_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rrr.sum[n][k];
             }
         }
     }
@@ -2419,13 +2772,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[4*LANES];
+    real X_in[4*LANES], V_in[4*LANES], Z_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
-    check_input(V, 4, w, t);
+    X = take(4, w, X, X_in, t);
+    V = take(4, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 4, w, t);
+    check(4, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 4, w, code, Z);
 }
@@ -2444,9 +2797,9 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2459,8 +2812,8 @@ INLINE void H_before(size_t w, const real *X, H_values *s)
     }
 }
 
-INLINE void H_legs_prrr(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, const real *X, H_results_prrr *o)
+INLINE void H_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const H_values *s,
+    size_t states, size_t count, const real *X, H_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2486,7 +2839,7 @@ INLINE void H_legs_prrr(const prepared *m, size_t leg, size_t legs, const H_valu
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -2545,9 +2898,9 @@ INLINE void H_legs_prrr(const prepared *m, size_t leg, size_t legs, const H_valu
         o->entry[2][k] = w_2_prrr_t_2;
         o->entry[3][k] = H_a_2_prrr_z;
         o->entry[4][k] = d1_qdd_2_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -2643,9 +2996,9 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2669,13 +3022,13 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
     clear(H, 16*w);
     H_before(w, X, s);
     if (w == 1) {  /* the legs side by side */
-        H_legs_prrr(m, 0, 1, s, 0, 1, X, &results_prrr);
+        H_legs_prrr(m, w, 0, 1, s, 0, 1, X, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             H_place_prrr(w, &results_prrr, leg, H, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            H_legs_prrr(m, leg, 0, s, 1, w, X, &results_prrr);
+            H_legs_prrr(m, w, leg, 0, s, 1, w, X, &results_prrr);
             H_place_prrr(w, &results_prrr, 0, H, t);
         }
     }
@@ -2694,12 +3047,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[16*LANES];
+    real X_in[4*LANES], H_of[16*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
+    X = take(4, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 16, w, t);
+    check(16, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 16, w, code, H);
 }
@@ -2721,15 +3074,15 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
-        const real V_0 = V[4*k + 0];
-        const real V_1 = V[4*k + 1];
-        const real V_2 = V[4*k + 2];
-        const real A_0 = A[4*k + 0];
-        const real A_1 = A[4*k + 1];
-        const real A_2 = A[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         const real J_star_zz = m->J_star_zz;
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -2779,9 +3132,9 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     }
 }
 
-INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, const real *X, const real *V, const real *A,
-    required_results_prrr *o)
+INLINE void required_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
+    required_values *s, size_t states, size_t count, int add, const real *X, const real *V, const
+    real *A, required_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2826,9 +3179,9 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
-        const real yd_1_prrr = V[4*j + 3];
-        const real ydd_1_prrr = A[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        const real yd_1_prrr = V[(3)*w + j];
+        const real ydd_1_prrr = A[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -2972,18 +3325,18 @@ INLINE void required_legs_prrr(const prepared *m, size_t leg, size_t legs, const
         const real P_1_prrr_t = G_prrr_t*axis_y_prrr_axes3_r1_x +
             G_prrr_t_2*axis_y_prrr_axes3_r1_y;
         const real P_1_prrr = T_1_prrr_x - P_1_prrr_t;
-        o->sum[0][k] = c_prrr_in_base_x;  /* total_prrr_x */
-        o->sum[1][k] = c_prrr_in_base_y;  /* total_prrr_y */
-        o->sum[2][k] = R_a_t;  /* total_prrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + c_prrr_in_base_x : c_prrr_in_base_x;  /* total_prrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_prrr_in_base_y : c_prrr_in_base_y;  /* total_prrr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + R_a_t : R_a_t;  /* total_prrr_z */
         o->entry[0][k] = P_1_prrr;
         o->entry[1][k] = 1;
         o->entry[2][k] = -w_2_prrr_t;
         o->entry[3][k] = w_2_prrr_t_2;
         o->entry[4][k] = H_a_2_prrr_z;
         o->entry[5][k] = d1_qdd_2_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -3003,7 +3356,7 @@ INLINE void required_place_prrr(size_t w, const required_results_prrr *o, size_t
 }
 
 INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rrr *o)
+    *s, size_t states, size_t count, int add, required_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3165,15 +3518,15 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_x*c_rrr_x;
         /* (E5) moment that actuators and external wrench must give */
         const real R_a_t_2 = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = c_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = c_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = R_a_t_2;  /* total_rrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrr_in_base_x : c_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrr_in_base_y : c_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + R_a_t_2 : R_a_t_2;  /* total_rrr_z */
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3221,40 +3574,46 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     clear(H, 16*w);
     required_before(m, w, X, V, A, s);
     if (w == 1) {  /* the legs side by side */
-        required_legs_prrr(m, 0, 1, s, 0, 1, X, V, A, &results_prrr);
+        required_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, V, A, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             required_place_prrr(w, &results_prrr, leg, required, H, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_prrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_prrr(m, leg, 0, s, 1, w, X, V, A, &results_prrr);
+            required_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, V, A, &results_prrr);
             required_place_prrr(w, &results_prrr, 0, required, H, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_prrr.sum[n][k] : results_prrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
+        required_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             required_place_rrr(w, &results_rrr, leg, leg, H, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rrr.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rrr.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             required_place_rrr(w, &results_rrr, leg, 0, H, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rrr.sum[n][k];
             }
         }
     }
@@ -3275,9 +3634,9 @@ typedef struct {
 INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3290,8 +3649,8 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
     }
 }
 
-INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, const real *X,
+INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const inverse_kinematics_values *s, size_t states, size_t count, const real *X,
     inverse_kinematics_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
@@ -3317,7 +3676,7 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t leg, size_t l
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real y_1_extra_prrr = X[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real S_prrr_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
             R_yx*prrr_platform_point_y;
@@ -3356,8 +3715,8 @@ INLINE void inverse_kinematics_legs_prrr(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = y_1_extra_prrr;
         o->entry[1][k] = q_2_prrr;
         o->entry[2][k] = q_3_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -3436,8 +3795,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
             inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x);
         o->entry[0][k] = q_1_rrr;
         o->entry[1][k] = q_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3460,13 +3819,13 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
     inverse_kinematics_results_rrr results_rrr;
     inverse_kinematics_before(w, X, s);
     if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_prrr(m, 0, 1, s, 0, 1, X, &results_prrr);
+        inverse_kinematics_legs_prrr(m, w, 0, 1, s, 0, 1, X, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             inverse_kinematics_place_prrr(w, &results_prrr, leg, q, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            inverse_kinematics_legs_prrr(m, leg, 0, s, 1, w, X, &results_prrr);
+            inverse_kinematics_legs_prrr(m, w, leg, 0, s, 1, w, X, &results_prrr);
             inverse_kinematics_place_prrr(w, &results_prrr, 0, q, t);
         }
     }
@@ -3485,12 +3844,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[7*LANES];
+    real X_in[4*LANES], q_of[7*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
+    X = take(4, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 7, w, t);
+    check(7, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 7, w, code, q);
 }
@@ -3510,12 +3869,12 @@ typedef struct {
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
-        const real V_0 = V[4*k + 0];
-        const real V_1 = V[4*k + 1];
-        const real V_2 = V[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3535,7 +3894,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
     }
 }
 
-INLINE void joint_rates_legs_prrr(const prepared *m, size_t leg, size_t legs, const
+INLINE void joint_rates_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
     joint_rates_values *s, size_t states, size_t count, const real *X, const real *V,
     joint_rates_results_prrr *o)
 {
@@ -3567,8 +3926,8 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t leg, size_t legs, co
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
-        const real yd_1_prrr = V[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        const real yd_1_prrr = V[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -3632,9 +3991,9 @@ INLINE void joint_rates_legs_prrr(const prepared *m, size_t leg, size_t legs, co
         o->entry[0][k] = yd_1_prrr;
         o->entry[1][k] = -qd_2_prrr;
         o->entry[2][k] = qd_3_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -3740,9 +4099,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
             r_1_rrr_t*s_2_rrr));
         o->entry[0][k] = -qd_1_rrr;
         o->entry[1][k] = qd_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3765,13 +4124,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
     joint_rates_results_rrr results_rrr;
     joint_rates_before(w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_prrr(m, 0, 1, s, 0, 1, X, V, &results_prrr);
+        joint_rates_legs_prrr(m, w, 0, 1, s, 0, 1, X, V, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             joint_rates_place_prrr(w, &results_prrr, leg, qd, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            joint_rates_legs_prrr(m, leg, 0, s, 1, w, X, V, &results_prrr);
+            joint_rates_legs_prrr(m, w, leg, 0, s, 1, w, X, V, &results_prrr);
             joint_rates_place_prrr(w, &results_prrr, 0, qd, t);
         }
     }
@@ -3791,13 +4150,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[7*LANES];
+    real X_in[4*LANES], V_in[4*LANES], qd_of[7*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
-    check_input(V, 4, w, t);
+    X = take(4, w, X, X_in, t);
+    V = take(4, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 7, w, t);
+    check(7, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 7, w, code, rates);
 }
@@ -3818,15 +4177,15 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
-        const real V_0 = V[4*k + 0];
-        const real V_1 = V[4*k + 1];
-        const real V_2 = V[4*k + 2];
-        const real A_0 = A[4*k + 0];
-        const real A_1 = A[4*k + 1];
-        const real A_2 = A[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3853,9 +4212,9 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     }
 }
 
-INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, const real *X, const real *V,
-    const real *A, joint_accelerations_results_prrr *o)
+INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs,
+    const joint_accelerations_values *s, size_t states, size_t count, const real *X, const real
+    *V, const real *A, joint_accelerations_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3888,9 +4247,9 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t leg, size_t 
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
-        const real yd_1_prrr = V[4*j + 3];
-        const real ydd_1_prrr = A[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        const real yd_1_prrr = V[(3)*w + j];
+        const real ydd_1_prrr = A[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -3979,9 +4338,9 @@ INLINE void joint_accelerations_legs_prrr(const prepared *m, size_t leg, size_t 
         o->entry[0][k] = ydd_1_prrr;
         o->entry[1][k] = -qdd_2_prrr;
         o->entry[2][k] = qdd_3_prrr;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -4115,9 +4474,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
             qdd_1_rrr*r_1_rrr_r0_x);
         o->entry[0][k] = -qdd_1_rrr;
         o->entry[1][k] = qdd_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -4140,13 +4499,13 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
     joint_accelerations_results_rrr results_rrr;
     joint_accelerations_before(w, X, V, A, s);
     if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_prrr(m, 0, 1, s, 0, 1, X, V, A, &results_prrr);
+        joint_accelerations_legs_prrr(m, w, 0, 1, s, 0, 1, X, V, A, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             joint_accelerations_place_prrr(w, &results_prrr, leg, qdd, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            joint_accelerations_legs_prrr(m, leg, 0, s, 1, w, X, V, A, &results_prrr);
+            joint_accelerations_legs_prrr(m, w, leg, 0, s, 1, w, X, V, A, &results_prrr);
             joint_accelerations_place_prrr(w, &results_prrr, 0, qdd, t);
         }
     }
@@ -4166,14 +4525,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[7*LANES];
+    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], qdd_of[7*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
-    check_input(V, 4, w, t);
-    check_input(A, 4, w, t);
+    X = take(4, w, X, X_in, t);
+    V = take(4, w, V, V_in, t);
+    A = take(4, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 7, w, t);
+    check(7, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 7, w, code, accelerations);
 }
@@ -4193,15 +4552,15 @@ typedef struct {
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
-        const real V_0 = V[4*k + 0];
-        const real V_1 = V[4*k + 1];
-        const real V_2 = V[4*k + 2];
-        const real A_0 = A[4*k + 0];
-        const real A_1 = A[4*k + 1];
-        const real A_2 = A[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -4228,9 +4587,9 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
     }
 }
 
-INLINE void legs_legs_prrr(const prepared *m, size_t leg, size_t legs, const legs_values *s,
-    size_t states, size_t count, const real *X, const real *V, const real *A, legs_results_prrr
-    *o)
+INLINE void legs_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const legs_values
+    *s, size_t states, size_t count, const real *X, const real *V, const real *A,
+    legs_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4274,9 +4633,9 @@ INLINE void legs_legs_prrr(const prepared *m, size_t leg, size_t legs, const leg
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
         const real size_prrr = m->size_prrr[i];
-        const real y_1_extra_prrr = X[4*j + 3];
-        const real yd_1_prrr = V[4*j + 3];
-        const real ydd_1_prrr = A[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        const real yd_1_prrr = V[(3)*w + j];
+        const real ydd_1_prrr = A[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
         const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
@@ -4407,9 +4766,9 @@ INLINE void legs_legs_prrr(const prepared *m, size_t leg, size_t legs, const leg
         o->entry[1][k] = c_true_prrr_in_base_y;
         o->entry[2][k] = -w_2_prrr_t;
         o->entry[3][k] = w_2_prrr_t_2;
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
-            unless(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -4593,9 +4952,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[1][k] = c_true_rrr_in_base_y;
         o->entry[2][k] = -w_1_rrr_t;
         o->entry[3][k] = w_1_rrr_t_2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -4622,13 +4981,13 @@ INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, 
     clear(drive, 12*w);
     legs_before(w, X, V, A, s);
     if (w == 1) {  /* the legs side by side */
-        legs_legs_prrr(m, 0, 1, s, 0, 1, X, V, A, &results_prrr);
+        legs_legs_prrr(m, w, 0, 1, s, 0, 1, X, V, A, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             legs_place_prrr(w, &results_prrr, leg, leg_force, drive, t);
         }
     } else {  /* the states side by side */
         for (size_t leg = 0; leg < 1; ++leg) {
-            legs_legs_prrr(m, leg, 0, s, 1, w, X, V, A, &results_prrr);
+            legs_legs_prrr(m, w, leg, 0, s, 1, w, X, V, A, &results_prrr);
             legs_place_prrr(w, &results_prrr, 0, leg_force, drive, t);
         }
     }
@@ -4659,9 +5018,9 @@ typedef struct {
 INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[4*k + 0];
-        const real X_1 = X[4*k + 1];
-        const real X_2 = X[4*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
@@ -4683,8 +5042,9 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
     }
 }
 
-INLINE void potential_legs_prrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, const real *X, potential_results_prrr *o)
+INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
+    potential_values *s, size_t states, size_t count, int add, const real *X,
+    potential_results_prrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4722,7 +5082,7 @@ INLINE void potential_legs_prrr(const prepared *m, size_t leg, size_t legs, cons
         const real prrr_platform_point_x = m->prrr_platform_point_x[i];
         const real prrr_platform_point_y = m->prrr_platform_point_y[i];
         const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
-        const real y_1_extra_prrr = X[4*j + 3];
+        const real y_1_extra_prrr = X[(3)*w + j];
         /* (prrr-K1) from the base point to the connection point */
         const real S_prrr_x = t_x + R_xx*prrr_platform_point_x - prrr_base_point_x -
             R_yx*prrr_platform_point_y;
@@ -4770,9 +5130,9 @@ INLINE void potential_legs_prrr(const prepared *m, size_t leg, size_t legs, cons
             - h_2_prrr_y*s_2_prrr - h_3_prrr_r0_y*s_2_prrr) + g_r0_y*(potential_t + potential_t_2
             + c_2_prrr*h_2_prrr_y + c_2_prrr*h_3_prrr_r0_y + h_2_prrr_x*s_2_prrr +
             h_3_prrr_r0_x*s_2_prrr - h_1_prrr_x);
-        o->sum[0][k] = potential_t_6;  /* total_prrr */
-        o->singular[k] = unless(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
-        o->unreachable[k] = unless(disc_2_prrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_6 : potential_t_6;  /* total_prrr */
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
     }
 }
 
@@ -4786,7 +5146,7 @@ INLINE void potential_place_prrr(size_t w, const potential_results_prrr *o, size
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rrr *o)
+    *s, size_t states, size_t count, int add, potential_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4862,9 +5222,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
             b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y_2 - g_r0_x_2*s_1_rrr)*(h_1_rrr_y +
             c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr - b_rrr_r0_x*s_1_rrr) -
             h_2_rrr_x*s_2_rrr);
-        o->sum[0][k] = potential_t_4;  /* total_rrr */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_4 : potential_t_4;  /* total_rrr */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -4896,318 +5256,50 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr results_rrr;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_prrr(m, 0, 1, s, 0, 1, X, &results_prrr);
+        potential_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_prrr(w, &results_prrr, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_prrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_prrr(m, leg, 0, s, 1, w, X, &results_prrr);
+            potential_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, &results_prrr);
             potential_place_prrr(w, &results_prrr, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_prrr.sum[n][k] : results_prrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrr(m, 0, 1, s, 0, 2, &results_rrr);
+        potential_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
         for (size_t leg = 0; leg < 2; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[1 + n][0] = total(results_rrr.sum[n], 2);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrr.sum[n], 2);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 2; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             potential_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[1 + n][k] = leg ? s->sum[1 + n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrr.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 3; ++e) {
-            force[e*w + k] += sign*wrench[3*k + e];
-        }
-    }
-}
-
-#define BIG 4  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[4][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 4; ++j) {
-            a[i*5 + j] = h[j*n + i];
-        }
-        a[i*5 + 4] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    for (size_t i = 0; i < 4; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -5218,16 +5310,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2, 3};  /* on which drives act */
     enum { N = 4, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[4*LANES], V_in[4*LANES], A_in[4*LANES], wrench_in[3*LANES];
     real force[4*LANES], H[16*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
-    check_input(V, 4, w, t);
-    check_input(A, 4, w, t);
+    X = take(4, w, X, X_in, t);
+    V = take(4, w, V, V_in, t);
+    A = take(4, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -5238,7 +5330,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 4, w, code, tau);
 }
@@ -5248,26 +5340,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 4, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[4*LANES], V_in[4*LANES], tau_in[4*LANES], wrench_in[3*LANES];
     real M[16*LANES], Z[4*LANES], H[16*LANES];
     real force[4*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 4, w, t);
-    check_input(V, 4, w, t);
-    check_input(tau, 4, w, t);
+    X = take(4, w, X, X_in, t);
+    V = take(4, w, V, V_in, t);
+    tau = take(4, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 4; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 4; ++j) {
-                sum += H[(i*4 + j)*w + k]*tau[4*k + j];
+                sum += H[(i*4 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 4; ++i) {
@@ -5279,7 +5371,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 4, w, code, A);
 }
@@ -5289,14 +5381,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int planar_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 4);
+    const int code = all_finite(A, 4) ? PLANAR_REDUNDANT_OK : PLANAR_REDUNDANT_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 4; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? PLANAR_REDUNDANT_OK : PLANAR_REDUNDANT_INVALID;
+    deliver(A, 4, 1, &code, completed);
+    return code;
 }
 
 int planar_redundant_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5307,7 +5397,7 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
     verdict values, *const t = &values;
     int code = planar_redundant_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != PLANAR_REDUNDANT_OK) {
-        deliver(leg_force, 9, 1, &code, forces);
+        refuse(9, forces);
         return code;
     }
     start(1, t);
@@ -5317,7 +5407,7 @@ int planar_redundant_leg_reactions(const prepared *m, const real *X, const real 
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 9, 1, t);
+    check(9, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 9, 1, &code, forces);
     return code;
@@ -5329,8 +5419,8 @@ int planar_redundant_energy(const prepared *m, const real *X, const real *V, rea
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 4, 1, t);
-    check_input(V, 4, 1, t);
+    check(4, 1, X, t->invalid);
+    check(4, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 4; ++i) {
@@ -5338,7 +5428,7 @@ int planar_redundant_energy(const prepared *m, const real *X, const real *V, rea
             energies[0] += V[i]*M[i*4 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

@@ -11,13 +11,16 @@ typedef sixbar_real real;
 typedef sixbar_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? SIXBAR_INVALID
+            : t->diverged[k] > 0 ? SIXBAR_NOT_CONVERGED
             : t->unreachable[k] > 0 ? SIXBAR_UNREACHABLE
             : t->singular[k] > 0 ? SIXBAR_SINGULAR
-            : t->diverged[k] > 0 ? SIXBAR_NOT_CONVERGED
             : t->overflow[k] > 0 ? SIXBAR_INVALID : SIXBAR_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == SIXBAR_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != SIXBAR_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -667,6 +687,320 @@ int sixbar_prepare(const sixbar_params *params, sixbar_model *model)
     return SIXBAR_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 3; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 3  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[3][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*4 + j] = h[j*n + i];
+        }
+        a[i*4 + 3] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    for (size_t i = 0; i < 3; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 275 mul, 193 add, 4 div, 2 sqrt, 0 trig, every leg counted ---- */
@@ -686,12 +1020,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     dynamics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         const real Z_p_t = m->Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
         const real gravity_x = m->gravity_x;
@@ -734,7 +1068,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
 }
 
 INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rrr *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -939,24 +1273,24 @@ INLINE void dynamics_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
         /* (M9) moment of the column's unit force about the platform origin */
         const real H_a_2_rrr_z = q_rrr_in_base_x*w_2_rrr_in_base_y -
             q_rrr_in_base_y*w_2_rrr_in_base_x;
-        o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = M_ta_t;  /* total_rrr_xz */
-        o->sum[4][k] = M_ta_t_2;  /* total_rrr_yz */
-        o->sum[5][k] = M_aa_t;  /* total_rrr_zz */
-        o->sum[6][k] = U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[7][k] = U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[8][k] = Z_a_t;  /* total_rrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rrr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rrr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rrr_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t : Z_a_t;  /* total_rrr_z */
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
         o->entry[3][k] = w_2_rrr_in_base_x;
         o->entry[4][k] = w_2_rrr_in_base_y;
         o->entry[5][k] = H_a_2_rrr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -976,7 +1310,7 @@ INLINE void dynamics_place_rrr(size_t w, const dynamics_results_rrr *o, size_t f
 }
 
 INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rrr2 *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1175,21 +1509,21 @@ INLINE void dynamics_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         const real w_1_rrr2_t_2 = axis_y_rrr2_axes2_in_base_x*inv_r_1_rrr2_r0_y;
         /* (M10) moment of the column's unit force about the platform origin */
         const real H_a_1_rrr2_z = q_rrr2_in_base_x*w_1_rrr2_t_2 + q_rrr2_in_base_y*w_1_rrr2_t;
-        o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
-        o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
-        o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
-        o->sum[3][k] = M_ta_t_3;  /* total_rrr2_xz */
-        o->sum[4][k] = M_ta_t_4;  /* total_rrr2_yz */
-        o->sum[5][k] = M_aa_t_2;  /* total_rrr2_zz */
-        o->sum[6][k] = U_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[7][k] = U_rrr2_in_base_y;  /* total_rrr2_y */
-        o->sum[8][k] = Z_a_t_2;  /* total_rrr2_z */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr2_t_5 : Q_rrr2_t_5;  /* total_rrr2_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr2_t_6 : Q_rrr2_t_6;  /* total_rrr2_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr2_t_7 : Q_rrr2_t_7;  /* total_rrr2_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr2_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr2_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr2_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_rrr2_in_base_x : U_rrr2_in_base_x;  /* total_rrr2_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_rrr2_in_base_y : U_rrr2_in_base_y;  /* total_rrr2_y */
+        o->sum[8][k] = add ? o->sum[8][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr2_z */
         o->entry[0][k] = -w_1_rrr2_t;
         o->entry[1][k] = w_1_rrr2_t_2;
         o->entry[2][k] = H_a_1_rrr2_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -1271,40 +1605,46 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_results_rrr2 results_rrr2;
     dynamics_before(m, w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        dynamics_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             dynamics_place_rrr(w, &results_rrr, leg, H, t);
         }
         for (size_t n = 0; n < 9; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            dynamics_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             dynamics_place_rrr(w, &results_rrr, 0, H, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        dynamics_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             dynamics_place_rrr2(w, &results_rrr2, leg, H, t);
         }
         for (size_t n = 0; n < 9; ++n) {
-            s->sum[9 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[9 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            dynamics_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            dynamics_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             dynamics_place_rrr2(w, &results_rrr2, 0, H, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[9 + n][k] = leg ? s->sum[9 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[9 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -1314,15 +1654,15 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
+    real X_in[3*LANES], V_in[3*LANES], M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 9, w, t);
-    check_output(Z_of, 3, w, t);
-    check_output(H_of, 9, w, t);
+    check(9, w, M_of, t->overflow);
+    check(3, w, Z_of, t->overflow);
+    check(9, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 9, w, code, M);
     deliver(Z_of, 3, w, code, Z);
@@ -1344,9 +1684,9 @@ typedef struct {
 INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         const real h_star_x = m->h_star_x;
         const real h_star_y = m->h_star_y;
         /* X: named entries */
@@ -1367,7 +1707,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s)
 }
 
 INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rrr *o)
+    states, size_t count, int add, M_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1482,15 +1822,15 @@ INLINE void M_legs_rrr(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_ta_t_2 = Q_rrr_t_6*q_rrr_in_base_y + Q_rrr_t_7*q_rrr_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t = M_ta_t*q_rrr_in_base_y + M_ta_t_2*q_rrr_in_base_x;
-        o->sum[0][k] = Q_rrr_t_5;  /* total_rrr_xx */
-        o->sum[1][k] = Q_rrr_t_6;  /* total_rrr_xy */
-        o->sum[2][k] = Q_rrr_t_7;  /* total_rrr_yy */
-        o->sum[3][k] = M_ta_t;  /* total_rrr_xz */
-        o->sum[4][k] = M_ta_t_2;  /* total_rrr_yz */
-        o->sum[5][k] = M_aa_t;  /* total_rrr_zz */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr_t_5 : Q_rrr_t_5;  /* total_rrr_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr_t_6 : Q_rrr_t_6;  /* total_rrr_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr_t_7 : Q_rrr_t_7;  /* total_rrr_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rrr_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rrr_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rrr_zz */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -1503,7 +1843,7 @@ INLINE void M_place_rrr(size_t w, const M_results_rrr *o, size_t first, verdict 
 }
 
 INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rrr2 *o)
+    states, size_t count, int add, M_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1618,15 +1958,15 @@ INLINE void M_legs_rrr2(const prepared *m, size_t leg, size_t legs, const M_valu
         const real M_ta_t_4 = Q_rrr2_t_6*q_rrr2_in_base_y + Q_rrr2_t_7*q_rrr2_in_base_x;
         /* (M3) rotational block of M */
         const real M_aa_t_2 = M_ta_t_3*q_rrr2_in_base_y + M_ta_t_4*q_rrr2_in_base_x;
-        o->sum[0][k] = Q_rrr2_t_5;  /* total_rrr2_xx */
-        o->sum[1][k] = Q_rrr2_t_6;  /* total_rrr2_xy */
-        o->sum[2][k] = Q_rrr2_t_7;  /* total_rrr2_yy */
-        o->sum[3][k] = M_ta_t_3;  /* total_rrr2_xz */
-        o->sum[4][k] = M_ta_t_4;  /* total_rrr2_yz */
-        o->sum[5][k] = M_aa_t_2;  /* total_rrr2_zz */
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_rrr2_t_5 : Q_rrr2_t_5;  /* total_rrr2_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_rrr2_t_6 : Q_rrr2_t_6;  /* total_rrr2_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_rrr2_t_7 : Q_rrr2_t_7;  /* total_rrr2_yy */
+        o->sum[3][k] = add ? o->sum[3][k] + M_ta_t_3 : M_ta_t_3;  /* total_rrr2_xz */
+        o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_4 : M_ta_t_4;  /* total_rrr2_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_2 : M_aa_t_2;  /* total_rrr2_zz */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -1685,40 +2025,46 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_rrr2 results_rrr2;
     M_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        M_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             M_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            M_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             M_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        M_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        M_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             M_place_rrr2(w, &results_rrr2, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[6 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[6 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            M_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            M_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             M_place_rrr2(w, &results_rrr2, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[6 + n][k] = leg ? s->sum[6 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[6 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -1727,12 +2073,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[9*LANES];
+    real X_in[3*LANES], M_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
+    X = take(3, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 9, w, t);
+    check(9, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 9, w, code, M);
 }
@@ -1752,12 +2098,12 @@ typedef struct {
 INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         const real Z_p_t = m->Z_p_t;
         const real Z_p_t_2 = m->Z_p_t_2;
         const real gravity_x = m->gravity_x;
@@ -1795,7 +2141,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
 }
 
 INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rrr *o)
+    states, size_t count, int add, Z_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1950,12 +2296,12 @@ INLINE void Z_legs_rrr(const prepared *m, size_t leg, size_t legs, const Z_value
             axis_y_rrr_axes2_in_base_y*c_rrr_o_y;
         /* (M7) rotational part of Z */
         const real Z_a_t = U_rrr_in_base_y*q_rrr_in_base_x - U_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = U_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = U_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = Z_a_t;  /* total_rrr_z */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrr_in_base_x : U_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrr_in_base_y : U_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_rrr_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -1968,7 +2314,7 @@ INLINE void Z_place_rrr(size_t w, const Z_results_rrr *o, size_t first, verdict 
 }
 
 INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rrr2 *o)
+    states, size_t count, int add, Z_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2125,12 +2471,12 @@ INLINE void Z_legs_rrr2(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (M7) rotational part of Z */
         const real Z_a_t_2 = U_rrr2_in_base_y*q_rrr2_in_base_x -
             U_rrr2_in_base_x*q_rrr2_in_base_y;
-        o->sum[0][k] = U_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[1][k] = U_rrr2_in_base_y;  /* total_rrr2_y */
-        o->sum[2][k] = Z_a_t_2;  /* total_rrr2_z */
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + U_rrr2_in_base_x : U_rrr2_in_base_x;  /* total_rrr2_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_rrr2_in_base_y : U_rrr2_in_base_y;  /* total_rrr2_y */
+        o->sum[2][k] = add ? o->sum[2][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrr2_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -2172,40 +2518,46 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_rrr2 results_rrr2;
     Z_before(m, w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        Z_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             Z_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            Z_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             Z_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        Z_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             Z_place_rrr2(w, &results_rrr2, leg, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            Z_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            Z_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             Z_place_rrr2(w, &results_rrr2, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -2214,13 +2566,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[3*LANES];
+    real X_in[3*LANES], V_in[3*LANES], Z_of[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 3, w, t);
+    check(3, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 3, w, code, Z);
 }
@@ -2239,9 +2591,9 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2352,9 +2704,9 @@ INLINE void H_legs_rrr(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[3][k] = w_2_rrr_in_base_x;
         o->entry[4][k] = w_2_rrr_in_base_y;
         o->entry[5][k] = H_a_2_rrr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2452,9 +2804,9 @@ INLINE void H_legs_rrr2(const prepared *m, size_t leg, size_t legs, const H_valu
         o->entry[0][k] = -w_1_rrr2_t;
         o->entry[1][k] = w_1_rrr2_t_2;
         o->entry[2][k] = H_a_1_rrr2_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -2501,12 +2853,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[9*LANES];
+    real X_in[3*LANES], H_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
+    X = take(3, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 9, w, t);
+    check(9, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 9, w, code, H);
 }
@@ -2528,15 +2880,15 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         const real J_star_zz = m->J_star_zz;
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
@@ -2587,7 +2939,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
 }
 
 INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rrr *o)
+    *s, size_t states, size_t count, int add, required_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2759,18 +3111,18 @@ INLINE void required_legs_rrr(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rrr_axes2_in_base_x*c_rrr_x;
         /* (E5) moment that actuators and external wrench must give */
         const real R_a_t = c_rrr_in_base_y*q_rrr_in_base_x - c_rrr_in_base_x*q_rrr_in_base_y;
-        o->sum[0][k] = c_rrr_in_base_x;  /* total_rrr_x */
-        o->sum[1][k] = c_rrr_in_base_y;  /* total_rrr_y */
-        o->sum[2][k] = R_a_t;  /* total_rrr_z */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrr_in_base_x : c_rrr_in_base_x;  /* total_rrr_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrr_in_base_y : c_rrr_in_base_y;  /* total_rrr_y */
+        o->sum[2][k] = add ? o->sum[2][k] + R_a_t : R_a_t;  /* total_rrr_z */
         o->entry[0][k] = -w_1_rrr_t;
         o->entry[1][k] = w_1_rrr_t_2;
         o->entry[2][k] = H_a_1_rrr_z;
         o->entry[3][k] = w_2_rrr_in_base_x;
         o->entry[4][k] = w_2_rrr_in_base_y;
         o->entry[5][k] = H_a_2_rrr_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -2790,7 +3142,7 @@ INLINE void required_place_rrr(size_t w, const required_results_rrr *o, size_t f
 }
 
 INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rrr2 *o)
+    *s, size_t states, size_t count, int add, required_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2953,15 +3305,15 @@ INLINE void required_legs_rrr2(const prepared *m, size_t leg, size_t legs, const
         /* (E5) moment that actuators and external wrench must give */
         const real R_a_t_2 = c_rrr2_in_base_y*q_rrr2_in_base_x -
             c_rrr2_in_base_x*q_rrr2_in_base_y;
-        o->sum[0][k] = c_rrr2_in_base_x;  /* total_rrr2_x */
-        o->sum[1][k] = c_rrr2_in_base_y;  /* total_rrr2_y */
-        o->sum[2][k] = R_a_t_2;  /* total_rrr2_z */
+        o->sum[0][k] = add ? o->sum[0][k] + c_rrr2_in_base_x : c_rrr2_in_base_x;  /* total_rrr2_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_rrr2_in_base_y : c_rrr2_in_base_y;  /* total_rrr2_y */
+        o->sum[2][k] = add ? o->sum[2][k] + R_a_t_2 : R_a_t_2;  /* total_rrr2_z */
         o->entry[0][k] = -w_1_rrr2_t;
         o->entry[1][k] = w_1_rrr2_t_2;
         o->entry[2][k] = H_a_1_rrr2_z;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3008,40 +3360,46 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     required_results_rrr2 results_rrr2;
     required_before(m, w, X, V, A, s);
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        required_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             required_place_rrr(w, &results_rrr, leg, H, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            required_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             required_place_rrr(w, &results_rrr, 0, H, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        required_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        required_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             required_place_rrr2(w, &results_rrr2, leg, H, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[3 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[3 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            required_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            required_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             required_place_rrr2(w, &results_rrr2, 0, H, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[3 + n][k] = leg ? s->sum[3 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[3 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
@@ -3062,9 +3420,9 @@ typedef struct {
 INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3140,8 +3498,8 @@ INLINE void inverse_kinematics_legs_rrr(const prepared *m, size_t leg, size_t le
             inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x);
         o->entry[0][k] = q_1_rrr;
         o->entry[1][k] = q_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3219,8 +3577,8 @@ INLINE void inverse_kinematics_legs_rrr2(const prepared *m, size_t leg, size_t l
             inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x);
         o->entry[0][k] = q_1_rrr2;
         o->entry[1][k] = q_2_rrr2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3268,12 +3626,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[4*LANES];
+    real X_in[3*LANES], q_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
+    X = take(3, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 4, w, t);
+    check(4, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 4, w, code, q);
 }
@@ -3293,12 +3651,12 @@ typedef struct {
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3408,9 +3766,9 @@ INLINE void joint_rates_legs_rrr(const prepared *m, size_t leg, size_t legs, con
             r_1_rrr_t*s_2_rrr));
         o->entry[0][k] = -qd_1_rrr;
         o->entry[1][k] = qd_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3515,9 +3873,9 @@ INLINE void joint_rates_legs_rrr2(const prepared *m, size_t leg, size_t legs, co
             r_1_rrr2_t*s_2_rrr2));
         o->entry[0][k] = -qd_1_rrr2;
         o->entry[1][k] = qd_2_rrr2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3566,13 +3924,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[4*LANES];
+    real X_in[3*LANES], V_in[3*LANES], qd_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 4, w, t);
+    check(4, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 4, w, code, rates);
 }
@@ -3593,15 +3951,15 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3746,9 +4104,9 @@ INLINE void joint_accelerations_legs_rrr(const prepared *m, size_t leg, size_t l
             qdd_1_rrr*r_1_rrr_r0_x);
         o->entry[0][k] = -qdd_1_rrr;
         o->entry[1][k] = qdd_2_rrr;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -3881,9 +4239,9 @@ INLINE void joint_accelerations_legs_rrr2(const prepared *m, size_t leg, size_t 
             qdd_1_rrr2*r_1_rrr2_r0_x);
         o->entry[0][k] = -qdd_1_rrr2;
         o->entry[1][k] = qdd_2_rrr2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -3932,14 +4290,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[4*LANES];
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of[4*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(A, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    A = take(3, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 4, w, t);
+    check(4, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 4, w, code, accelerations);
 }
@@ -3959,15 +4317,15 @@ typedef struct {
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -4170,9 +4528,9 @@ INLINE void legs_legs_rrr(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[3][k] = w_1_rrr_t_2;
         o->entry[4][k] = w_2_rrr_in_base_x;
         o->entry[5][k] = w_2_rrr_in_base_y;
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
-            unless(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -4358,9 +4716,9 @@ INLINE void legs_legs_rrr2(const prepared *m, size_t leg, size_t legs, const leg
         o->entry[1][k] = c_true_rrr2_in_base_y;
         o->entry[2][k] = -w_1_rrr2_t;
         o->entry[3][k] = w_1_rrr2_t_2;
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
-            unless(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t) +
+            UNLESS(magnitude(-r_1_rrr2_r0_y) > TOLERANCE*size_rrr2);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -4424,9 +4782,9 @@ typedef struct {
 INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real h_star_x = m->h_star_x;
@@ -4449,7 +4807,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
 }
 
 INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rrr *o)
+    *s, size_t states, size_t count, int add, potential_results_rrr *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4525,9 +4883,9 @@ INLINE void potential_legs_rrr(const prepared *m, size_t leg, size_t legs, const
             b_rrr_r0_y*s_1_rrr)) + (c_1_rrr*g_r0_y - g_r0_x*s_1_rrr)*(h_1_rrr_y +
             c_2_rrr*h_2_rrr_y + rrr_link1_mass*(b_rrr_r0_y*c_1_rrr - b_rrr_r0_x*s_1_rrr) -
             h_2_rrr_x*s_2_rrr);
-        o->sum[0][k] = potential_t_3;  /* total_rrr */
-        o->singular[k] = unless(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
-        o->unreachable[k] = unless(disc_1_rrr >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rrr */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
     }
 }
 
@@ -4541,7 +4899,7 @@ INLINE void potential_place_rrr(size_t w, const potential_results_rrr *o, size_t
 }
 
 INLINE void potential_legs_rrr2(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rrr2 *o)
+    *s, size_t states, size_t count, int add, potential_results_rrr2 *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -4617,9 +4975,9 @@ INLINE void potential_legs_rrr2(const prepared *m, size_t leg, size_t legs, cons
             b_rrr2_r0_y*s_1_rrr2)) + (c_1_rrr2*g_r0_y_2 - g_r0_x_2*s_1_rrr2)*(h_1_rrr2_y +
             c_2_rrr2*h_2_rrr2_y + rrr2_link1_mass*(b_rrr2_r0_y*c_1_rrr2 - b_rrr2_r0_x*s_1_rrr2) -
             h_2_rrr2_x*s_2_rrr2);
-        o->sum[0][k] = potential_t_2;  /* total_rrr2 */
-        o->singular[k] = unless(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
-        o->unreachable[k] = unless(disc_1_rrr2 >= 0);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_rrr2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr2) > TOLERANCE*TOLERANCE*rho2_1_rrr2_t);
+        o->unreachable[k] = UNLESS(disc_1_rrr2 >= 0);
     }
 }
 
@@ -4651,318 +5009,50 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rrr2 results_rrr2;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrr(m, 0, 1, s, 0, 1, &results_rrr);
+        potential_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr(w, &results_rrr, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_rrr.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr(m, leg, 0, s, 1, w, &results_rrr);
+            potential_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
             potential_place_rrr(w, &results_rrr, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rrr.sum[n][k] : results_rrr.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
             }
         }
     }
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rrr2(m, 0, 1, s, 0, 1, &results_rrr2);
+        potential_legs_rrr2(m, 0, 1, s, 0, 1, 0, &results_rrr2);
         for (size_t leg = 0; leg < 1; ++leg) {
             potential_place_rrr2(w, &results_rrr2, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[1 + n][0] = total(results_rrr2.sum[n], 1);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrr2.sum[n], 1);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rrr2.sum, 0, sizeof results_rrr2.sum);
         for (size_t leg = 0; leg < 1; ++leg) {
-            potential_legs_rrr2(m, leg, 0, s, 1, w, &results_rrr2);
+            potential_legs_rrr2(m, leg, 0, s, 1, w, 1, &results_rrr2);
             potential_place_rrr2(w, &results_rrr2, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[1 + n][k] = leg ? s->sum[1 + n][k] + results_rrr2.sum[n][k] : results_rrr2.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrr2.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 3; ++e) {
-            force[e*w + k] += sign*wrench[3*k + e];
-        }
-    }
-}
-
-#define BIG 3  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[3][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            a[i*4 + j] = h[j*n + i];
-        }
-        a[i*4 + 3] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -4973,16 +5063,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2};  /* on which drives act */
     enum { N = 3, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES];
     real force[3*LANES], H[9*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(A, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    A = take(3, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -4993,7 +5083,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, tau);
 }
@@ -5003,26 +5093,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 3, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES];
     real M[9*LANES], Z[3*LANES], H[9*LANES];
     real force[3*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(tau, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    tau = take(3, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 3; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[3*k + j];
+                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 3; ++i) {
@@ -5034,7 +5124,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, A);
 }
@@ -5044,14 +5134,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int sixbar_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 3);
+    const int code = all_finite(A, 3) ? SIXBAR_OK : SIXBAR_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 3; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? SIXBAR_OK : SIXBAR_INVALID;
+    deliver(A, 3, 1, &code, completed);
+    return code;
 }
 
 int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5062,7 +5150,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
     verdict values, *const t = &values;
     int code = sixbar_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != SIXBAR_OK) {
-        deliver(leg_force, 6, 1, &code, forces);
+        refuse(6, forces);
         return code;
     }
     start(1, t);
@@ -5072,7 +5160,7 @@ int sixbar_leg_reactions(const prepared *m, const real *X, const real *V, const 
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 6, 1, t);
+    check(6, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 6, 1, &code, forces);
     return code;
@@ -5084,8 +5172,8 @@ int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 3, 1, t);
-    check_input(V, 3, 1, t);
+    check(3, 1, X, t->invalid);
+    check(3, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 3; ++i) {
@@ -5093,7 +5181,7 @@ int sixbar_energy(const prepared *m, const real *X, const real *V, real *kinetic
             energies[0] += V[i]*M[i*3 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

@@ -11,13 +11,16 @@ typedef tripod_3rps_real real;
 typedef tripod_3rps_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? TRIPOD_3RPS_INVALID
+            : t->diverged[k] > 0 ? TRIPOD_3RPS_NOT_CONVERGED
             : t->unreachable[k] > 0 ? TRIPOD_3RPS_UNREACHABLE
             : t->singular[k] > 0 ? TRIPOD_3RPS_SINGULAR
-            : t->diverged[k] > 0 ? TRIPOD_3RPS_NOT_CONVERGED
             : t->overflow[k] > 0 ? TRIPOD_3RPS_INVALID : TRIPOD_3RPS_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == TRIPOD_3RPS_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != TRIPOD_3RPS_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -454,6 +474,334 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     return TRIPOD_3RPS_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 6; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 6  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define MET BY_TYPE(5e-6, 1e-14, 1e-17)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[6][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 6; ++j) {
+            a[i*7 + j] = h[j*n + i];
+        }
+        a[i*7 + 6] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step: the quaternion turns by its angular part. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    const real *const p = X + 3, *const v = step + 3;
+    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
+    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
+    const real a[3] = {f*v[0], f*v[1], f*v[2]};
+    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
+    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    for (size_t i = 0; i < 3; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
+    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
+    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
+    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
+    for (size_t i = 7; i < 7; ++i) {
+        to[i] = X[i] + part*step[i - 1];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 585 mul, 468 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
@@ -474,19 +822,19 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
     dynamics_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         const real J_star_t_6 = m->J_star_t_6;
         const real J_star_t_8 = m->J_star_t_8;
         const real J_star_xx = m->J_star_xx;
@@ -620,12 +968,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_rps *o)
+    *s, size_t states, size_t count, int add, dynamics_results_rps *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -822,33 +1170,33 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz;
         const real Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz;
         const real Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz;
-        o->sum[0][k] = d_c_in_base_x_3;  /* total_rps_xx */
-        o->sum[1][k] = d_c_in_base_y_3;  /* total_rps_xy */
-        o->sum[2][k] = d_c_in_base_z;  /* total_rps_xz */
-        o->sum[3][k] = d_c_in_base_y_4;  /* total_rps_yy */
-        o->sum[4][k] = d_c_in_base_z_2;  /* total_rps_yz */
-        o->sum[5][k] = d_c_in_base_z_3;  /* total_rps_zz */
-        o->sum[6][k] = M_ta_t_3;  /* total_rps_xx_2 */
-        o->sum[7][k] = M_ta_t_4;  /* total_rps_xy_2 */
-        o->sum[8][k] = M_ta_t_5;  /* total_rps_xz_2 */
-        o->sum[9][k] = M_ta_t_6;  /* total_rps_yx */
-        o->sum[10][k] = M_ta_t_8;  /* total_rps_yy_2 */
-        o->sum[11][k] = M_ta_t_9;  /* total_rps_yz_2 */
-        o->sum[12][k] = M_ta_t_10;  /* total_rps_zx */
-        o->sum[13][k] = M_ta_t_11;  /* total_rps_zy */
-        o->sum[14][k] = M_ta_t_12;  /* total_rps_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_rps_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_rps_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_rps_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_rps_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_rps_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_rps_zz_3 */
-        o->sum[21][k] = U_in_base_x;  /* total_rps_x */
-        o->sum[22][k] = U_in_base_y;  /* total_rps_y */
-        o->sum[23][k] = U_in_base_z;  /* total_rps_z */
-        o->sum[24][k] = Z_a_t;  /* total_rps_x_2 */
-        o->sum[25][k] = Z_a_t_2;  /* total_rps_y_2 */
-        o->sum[26][k] = Z_a_t_3;  /* total_rps_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + d_c_in_base_x_3 : d_c_in_base_x_3;  /* total_rps_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + d_c_in_base_y_3 : d_c_in_base_y_3;  /* total_rps_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + d_c_in_base_z : d_c_in_base_z;  /* total_rps_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + d_c_in_base_y_4 : d_c_in_base_y_4;  /* total_rps_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + d_c_in_base_z_2 : d_c_in_base_z_2;  /* total_rps_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + d_c_in_base_z_3 : d_c_in_base_z_3;  /* total_rps_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_rps_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_rps_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_rps_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_rps_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_rps_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_rps_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_rps_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_rps_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_rps_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_rps_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_rps_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_rps_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_rps_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_rps_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_rps_zz_3 */
+        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_rps_x */
+        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_rps_y */
+        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_rps_z */
+        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_rps_x_2 */
+        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_rps_y_2 */
+        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_rps_z_2 */
         o->entry[0][k] = axis_x_rps_axes1_in_base_x;
         o->entry[1][k] = axis_x_rps_axes1_in_base_y;
         o->entry[2][k] = axis_x_rps_axes1_in_base_z;
@@ -862,8 +1210,8 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
         o->entry[12][k] = u_1_tip_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -1013,21 +1361,24 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_results_rps results_rps;
     dynamics_before(m, w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_rps(m, 0, 1, s, 0, 3, &results_rps);
+        dynamics_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             dynamics_place_rps(w, &results_rps, leg, leg, H, Hk, constraint_bias, t);
         }
         for (size_t n = 0; n < 27; ++n) {
-            s->sum[n][0] = total(results_rps.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rps.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_rps(m, leg, 0, s, 1, w, &results_rps);
+            dynamics_legs_rps(m, leg, 0, s, 1, w, 1, &results_rps);
             dynamics_place_rps(w, &results_rps, leg, 0, H, Hk, constraint_bias, t);
-            for (size_t n = 0; n < 27; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rps.sum[n][k] : results_rps.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 27; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rps.sum[n][k];
             }
         }
     }
@@ -1037,15 +1388,16 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[36*LANES], Z_of[6*LANES], H_of[18*LANES], Hk_of[18*LANES], constraint_bias_of[3*LANES];
+    real X_in[7*LANES], V_in[6*LANES], M_of[36*LANES], Z_of[6*LANES], H_of[18*LANES], Hk_of[18*LANES],
+        constraint_bias_of[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, Hk_of, constraint_bias_of, t);
-    check_output(M_of, 36, w, t);
-    check_output(Z_of, 6, w, t);
-    check_output(H_of, 18, w, t);
+    check(36, w, M_of, t->overflow);
+    check(6, w, Z_of, t->overflow);
+    check(18, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 36, w, code, M);
     deliver(Z_of, 6, w, code, Z);
@@ -1067,13 +1419,13 @@ typedef struct {
 INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         const real J_star_t_6 = m->J_star_t_6;
         const real J_star_t_8 = m->J_star_t_8;
         const real J_star_xx = m->J_star_xx;
@@ -1154,12 +1506,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_14[k] = J_star_t_14;
         s->J_star_t_15[k] = J_star_t_15;
         s->J_star_t_17[k] = J_star_t_17;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_rps *o)
+    states, size_t count, int add, M_results_rps *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1277,29 +1629,29 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         const real M_aa_t_4 = M_ta_t_4*q_in_base_z - M_ta_t_11*q_in_base_x;
         const real M_aa_t_5 = M_ta_t_12*q_in_base_x + M_ta_t_5*q_in_base_z;
         const real M_aa_t_6 = M_ta_t_5*q_in_base_y - M_ta_t_9*q_in_base_x;
-        o->sum[0][k] = d_c_in_base_x_3;  /* total_rps_xx */
-        o->sum[1][k] = d_c_in_base_y_3;  /* total_rps_xy */
-        o->sum[2][k] = d_c_in_base_z;  /* total_rps_xz */
-        o->sum[3][k] = d_c_in_base_y_4;  /* total_rps_yy */
-        o->sum[4][k] = d_c_in_base_z_2;  /* total_rps_yz */
-        o->sum[5][k] = d_c_in_base_z_3;  /* total_rps_zz */
-        o->sum[6][k] = M_ta_t_3;  /* total_rps_xx_2 */
-        o->sum[7][k] = M_ta_t_4;  /* total_rps_xy_2 */
-        o->sum[8][k] = M_ta_t_5;  /* total_rps_xz_2 */
-        o->sum[9][k] = M_ta_t_6;  /* total_rps_yx */
-        o->sum[10][k] = M_ta_t_8;  /* total_rps_yy_2 */
-        o->sum[11][k] = M_ta_t_9;  /* total_rps_yz_2 */
-        o->sum[12][k] = M_ta_t_10;  /* total_rps_zx */
-        o->sum[13][k] = M_ta_t_11;  /* total_rps_zy */
-        o->sum[14][k] = M_ta_t_12;  /* total_rps_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_rps_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_rps_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_rps_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_rps_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_rps_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_rps_zz_3 */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->sum[0][k] = add ? o->sum[0][k] + d_c_in_base_x_3 : d_c_in_base_x_3;  /* total_rps_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + d_c_in_base_y_3 : d_c_in_base_y_3;  /* total_rps_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + d_c_in_base_z : d_c_in_base_z;  /* total_rps_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + d_c_in_base_y_4 : d_c_in_base_y_4;  /* total_rps_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + d_c_in_base_z_2 : d_c_in_base_z_2;  /* total_rps_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + d_c_in_base_z_3 : d_c_in_base_z_3;  /* total_rps_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_3 : M_ta_t_3;  /* total_rps_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_4 : M_ta_t_4;  /* total_rps_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_5 : M_ta_t_5;  /* total_rps_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_6 : M_ta_t_6;  /* total_rps_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_8 : M_ta_t_8;  /* total_rps_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_9 : M_ta_t_9;  /* total_rps_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_10 : M_ta_t_10;  /* total_rps_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_11 : M_ta_t_11;  /* total_rps_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_12 : M_ta_t_12;  /* total_rps_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_rps_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_rps_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_rps_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_rps_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_rps_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_rps_zz_3 */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -1407,21 +1759,24 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_rps results_rps;
     M_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        M_legs_rps(m, 0, 1, s, 0, 3, &results_rps);
+        M_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             M_place_rps(w, &results_rps, leg, t);
         }
         for (size_t n = 0; n < 21; ++n) {
-            s->sum[n][0] = total(results_rps.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rps.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_rps(m, leg, 0, s, 1, w, &results_rps);
+            M_legs_rps(m, leg, 0, s, 1, w, 1, &results_rps);
             M_place_rps(w, &results_rps, 0, t);
-            for (size_t n = 0; n < 21; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rps.sum[n][k] : results_rps.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 21; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rps.sum[n][k];
             }
         }
     }
@@ -1430,12 +1785,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[36*LANES];
+    real X_in[7*LANES], M_of[36*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 36, w, t);
+    check(36, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 36, w, code, M);
 }
@@ -1456,19 +1811,19 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -1572,12 +1927,12 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_rps *o)
+    states, size_t count, int add, Z_results_rps *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1706,14 +2061,14 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
         const real Z_a_t = U_in_base_z*q_in_base_y - U_in_base_y*q_in_base_z;
         const real Z_a_t_2 = U_in_base_x*q_in_base_z - U_in_base_z*q_in_base_x;
         const real Z_a_t_3 = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = U_in_base_x;  /* total_rps_x */
-        o->sum[1][k] = U_in_base_y;  /* total_rps_y */
-        o->sum[2][k] = U_in_base_z;  /* total_rps_z */
-        o->sum[3][k] = Z_a_t;  /* total_rps_x_2 */
-        o->sum[4][k] = Z_a_t_2;  /* total_rps_y_2 */
-        o->sum[5][k] = Z_a_t_3;  /* total_rps_z_2 */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_rps_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_rps_y */
+        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_rps_z */
+        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_rps_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_rps_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_rps_z_2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -1762,21 +2117,24 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_rps results_rps;
     Z_before(m, w, X, V, s, t);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_rps(m, 0, 1, s, 0, 3, &results_rps);
+        Z_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             Z_place_rps(w, &results_rps, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_rps.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rps.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_rps(m, leg, 0, s, 1, w, &results_rps);
+            Z_legs_rps(m, leg, 0, s, 1, w, 1, &results_rps);
             Z_place_rps(w, &results_rps, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rps.sum[n][k] : results_rps.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rps.sum[n][k];
             }
         }
     }
@@ -1785,13 +2143,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[6*LANES];
+    real X_in[7*LANES], V_in[6*LANES], Z_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 6, w, t);
+    check(6, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 6, w, code, Z);
 }
@@ -1808,13 +2166,13 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1854,7 +2212,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -1931,8 +2289,8 @@ INLINE void H_legs_rps(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[3][k] = H_a_2_x;
         o->entry[4][k] = H_a_2_y;
         o->entry[5][k] = H_a_2_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -1970,12 +2328,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[18*LANES];
+    real X_in[7*LANES], H_of[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 18, w, t);
+    check(18, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 18, w, code, H);
 }
@@ -1992,10 +2350,10 @@ typedef struct {
 INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
@@ -2029,7 +2387,7 @@ INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -2106,12 +2464,12 @@ INLINE void Hk_run(const prepared *m, size_t w, const real *X, real *Hk, verdict
 
 INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk, int *code)
 {
-    real Hk_of[18*LANES];
+    real X_in[7*LANES], Hk_of[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     Hk_run(m, w, X, Hk_of, t);
-    check_output(Hk_of, 18, w, t);
+    check(18, w, Hk_of, t->overflow);
     judge(t, w, code);
     deliver(Hk_of, 18, w, code, Hk);
 }
@@ -2129,13 +2487,13 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
     *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         /* X: named entries */
         const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
         const real quaternion_scale = 2/quaternion_norm2;
@@ -2176,7 +2534,7 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -2253,13 +2611,13 @@ INLINE void constraint_bias_run(const prepared *m, size_t w, const real *X, cons
 INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, const real *V, real
     *bias, int *code)
 {
-    real constraint_bias_of[3*LANES];
+    real X_in[7*LANES], V_in[6*LANES], constraint_bias_of[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     constraint_bias_run(m, w, X, V, constraint_bias_of, t);
-    check_output(constraint_bias_of, 3, w, t);
+    check(3, w, constraint_bias_of, t->overflow);
     judge(t, w, code);
     deliver(constraint_bias_of, 3, w, code, bias);
 }
@@ -2281,25 +2639,25 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -2430,12 +2788,12 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_rps *o)
+    *s, size_t states, size_t count, int add, required_results_rps *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2588,12 +2946,12 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real R_a_t = c_in_base_z*q_in_base_y - c_in_base_y*q_in_base_z;
         const real R_a_t_2 = c_in_base_x*q_in_base_z - c_in_base_z*q_in_base_x;
         const real R_a_t_3 = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = c_in_base_x;  /* total_rps_x */
-        o->sum[1][k] = c_in_base_y;  /* total_rps_y */
-        o->sum[2][k] = c_in_base_z;  /* total_rps_z */
-        o->sum[3][k] = R_a_t;  /* total_rps_x_2 */
-        o->sum[4][k] = R_a_t_2;  /* total_rps_y_2 */
-        o->sum[5][k] = R_a_t_3;  /* total_rps_z_2 */
+        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_rps_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_rps_y */
+        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_rps_z */
+        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_rps_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_rps_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_rps_z_2 */
         o->entry[0][k] = axis_x_rps_axes1_in_base_x;
         o->entry[1][k] = axis_x_rps_axes1_in_base_y;
         o->entry[2][k] = axis_x_rps_axes1_in_base_z;
@@ -2606,8 +2964,8 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         o->entry[9][k] = Hk_a_1_x;
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -2670,21 +3028,24 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     required_results_rps results_rps;
     required_before(m, w, X, V, A, s, t);
     if (w == 1) {  /* the legs side by side */
-        required_legs_rps(m, 0, 1, s, 0, 3, &results_rps);
+        required_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             required_place_rps(w, &results_rps, leg, leg, H, Hk, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_rps.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rps.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_rps(m, leg, 0, s, 1, w, &results_rps);
+            required_legs_rps(m, leg, 0, s, 1, w, 1, &results_rps);
             required_place_rps(w, &results_rps, leg, 0, H, Hk, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rps.sum[n][k] : results_rps.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rps.sum[n][k];
             }
         }
     }
@@ -2704,13 +3065,13 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2750,7 +3111,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -2807,7 +3168,7 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t leg, size_t le
         const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
         o->entry[0][k] = q_1;
         o->entry[1][k] = root_1;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
     }
 }
 
@@ -2842,12 +3203,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[6*LANES];
+    real X_in[7*LANES], q_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 6, w, t);
+    check(6, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 6, w, code, q);
 }
@@ -2866,19 +3227,19 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2931,7 +3292,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3010,8 +3371,8 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t leg, size_t legs, con
             S_dot_z*(c_1*rps_base_frame_zy - rps_base_frame_zx*s_1));
         o->entry[0][k] = qd_1;
         o->entry[1][k] = S_dot_tip_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -3047,13 +3408,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[6*LANES];
+    real X_in[7*LANES], V_in[6*LANES], qd_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 6, w, t);
+    check(6, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 6, w, code, rates);
 }
@@ -3074,25 +3435,25 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3158,7 +3519,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3269,8 +3630,8 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real qdd_1 = inv_root_1*rel_y;
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = rel_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -3306,14 +3667,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[6*LANES];
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of[6*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(A, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    A = take(6, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 6, w, t);
+    check(6, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 6, w, code, accelerations);
 }
@@ -3330,13 +3691,13 @@ typedef struct {
 INLINE void constraints_before(size_t w, const real *X, constraints_values *s, verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3376,7 +3737,7 @@ INLINE void constraints_before(size_t w, const real *X, constraints_values *s, v
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3449,12 +3810,12 @@ INLINE void constraints_run(const prepared *m, size_t w, const real *X, real *co
 
 INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *residual, int *code)
 {
-    real constraints_of[3*LANES];
+    real X_in[7*LANES], constraints_of[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
+    X = take(7, w, X, X_in, t);
     constraints_run(m, w, X, constraints_of, t);
-    check_output(constraints_of, 3, w, t);
+    check(3, w, constraints_of, t->overflow);
     judge(t, w, code);
     deliver(constraints_of, 3, w, code, residual);
 }
@@ -3475,25 +3836,25 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -3559,7 +3920,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
@@ -3711,8 +4072,8 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[6][k] = rps_base_frame_xz;
         o->entry[7][k] = rps_base_frame_yz;
         o->entry[8][k] = rps_base_frame_zz;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(root_1) > TOLERANCE*size_);
     }
 }
 
@@ -3766,13 +4127,13 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
     verdict *t)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -3825,12 +4186,12 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_2[k] = potential_t_2;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
     }
 }
 
 INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_rps *o)
+    *s, size_t states, size_t count, int add, potential_results_rps *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -3898,8 +4259,8 @@ INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const
         const real potential_t_3 = potential_t + (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x +
             b_r1_x*rps_link1_mass + rps_link2_mass*(b_r1_x + root_1)) + (c_1*g_r0_y -
             g_r0_x*s_1)*(h_1_y + h_2_y + b_r1_y*rps_link1_mass + b_r1_y*rps_link2_mass);
-        o->sum[0][k] = potential_t_3;  /* total_rps */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rps */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
     }
 }
 
@@ -3928,313 +4289,28 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_rps results_rps;
     potential_before(m, w, X, s, t);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_rps(m, 0, 1, s, 0, 3, &results_rps);
+        potential_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_rps(w, &results_rps, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_rps.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rps.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_rps(m, leg, 0, s, 1, w, &results_rps);
+            potential_legs_rps(m, leg, 0, s, 1, w, 1, &results_rps);
             potential_place_rps(w, &results_rps, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_rps.sum[n][k] : results_rps.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rps.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 6; ++e) {
-            force[e*w + k] += sign*wrench[6*k + e];
-        }
-    }
-}
-
-#define BIG 6  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define MET BY_TYPE(5e-6, 1e-14, 1e-17)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[6][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 6; ++j) {
-            a[i*7 + j] = h[j*n + i];
-        }
-        a[i*7 + 6] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step: the quaternion turns by its angular part. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    const real *const p = X + 3, *const v = step + 3;
-    const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
-    const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
-    const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
-    to[3] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
-    to[4] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
-    to[5] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
-    to[6] = c*b[3] - a[0]*b[0] - a[1]*b[1] - a[2]*b[2];
-    for (size_t i = 7; i < 7; ++i) {
-        to[i] = X[i] + part*step[i - 1];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -4245,29 +4321,29 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2, 3, 4, 5};  /* on which drives act */
     enum { N = 6, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES];
     real force[6*LANES], H[18*LANES], a[N*PADDED*LANES], x[N*LANES];
     real Hk[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(A, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    A = take(6, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, Hk, t);
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
             for (size_t k = 0; k < w; ++k) {
                 a[(i*stride + j)*w + k] = j < 3 ? H[(rows[i]*3 + j)*w + k]
-                    : j < N ? Hk[(rows[i]*3 + j - 3)*w + k]
+                    : j < 6 ? Hk[(rows[i]*3 + j - 3)*w + k]
                     : j == N ? force[rows[i]*w + k] : 0;
             }
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, tau);
     deliver(x + 3*w, 3, w, code, lambda);
@@ -4278,28 +4354,27 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 9, PADDED = 12 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], wrench_in[6*LANES];
     real M[36*LANES], Z[6*LANES], H[18*LANES];
     real force[6*LANES], a[N*PADDED*LANES], x[N*LANES];
     real Hk[18*LANES], constraint_bias[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(tau, 3, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    tau = take(3, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, t);
-    constraint_bias_run(m, w, X, V, constraint_bias, t);
     for (size_t i = 0; i < 6; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[3*k + j];
+                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 6; ++i) {
@@ -4321,7 +4396,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 6, w, code, A);
     deliver(x + 6*w, 3, w, code, lambda);
@@ -4332,14 +4407,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int tripod_3rps_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 6);
+    const int code = all_finite(A, 6) ? TRIPOD_3RPS_OK : TRIPOD_3RPS_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 6; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? TRIPOD_3RPS_OK : TRIPOD_3RPS_INVALID;
+    deliver(A, 6, 1, &code, completed);
+    return code;
 }
 
 int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -4352,7 +4425,7 @@ int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, c
     verdict values, *const t = &values;
     int code = tripod_3rps_inverse_dynamics(m, X, V, A, wrench, tau, lambda);
     if (code != TRIPOD_3RPS_OK) {
-        deliver(leg_force, 9, 1, &code, forces);
+        refuse(9, forces);
         return code;
     }
     start(1, t);
@@ -4367,7 +4440,7 @@ int tripod_3rps_leg_reactions(const prepared *m, const real *X, const real *V, c
             leg_force[3*bound[i] + e] += lambda[i]*constraint_direction[3*i + e];
         }
     }
-    check_output(leg_force, 9, 1, t);
+    check(9, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 9, 1, &code, forces);
     return code;
@@ -4379,8 +4452,8 @@ int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *ki
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 7, 1, t);
-    check_input(V, 6, 1, t);
+    check(7, 1, X, t->invalid);
+    check(6, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 6; ++i) {
@@ -4388,7 +4461,7 @@ int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *ki
             energies[0] += V[i]*M[i*6 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

@@ -2987,9 +2987,12 @@ def _solve(a, b):
     b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
     if count <= _FEW:
         rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        return np.array(rows).reshape(*lead, n)
-    with np.errstate(all="ignore"):
-        return _solve_block(a, b).reshape(*lead, n)
+        x = np.array(rows).reshape(count, n)
+    else:
+        with np.errstate(all="ignore"):
+            x = _solve_block(a, b)
+    x[~np.isfinite(x).all(axis=1)] = np.nan
+    return x.reshape(*lead, n)
 
 
 def _solve_one(a, b):
@@ -3080,6 +3083,14 @@ def _together(failed, *arrays):
     return [array for array, _ in arrays]
 
 
+def _known(array, axes, *inputs):
+    """The array, NaN in every row in which one of its entries or an input is not finite."""
+    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
+    for value in inputs:
+        failed = failed | ~np.isfinite(value).all(axis=-1)
+    return _together(failed, (array, axes))[0]
+
+
 def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
@@ -3098,17 +3109,19 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
     tau = _vector("forward_dynamics", "tau", tau, NU)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    force = (matrix @ tau[..., None])[..., 0] + _external("forward_dynamics", wrench) - bias
+    external = _external("forward_dynamics", wrench)
+    with np.errstate(all="ignore"):
+        force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _constrained_acceleration(inertia, rest[0], rest[1], force)
 
 
 def complete_acceleration(X, V, A, p=None):
     """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
     """
-    A = np.array(_vector("complete_acceleration", "A", A, NV))
-    _vector("complete_acceleration", "X", X, NQ)
-    _vector("complete_acceleration", "V", V, NV)
-    return A
+    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
+    A = _vector("complete_acceleration", "A", A, NV)
+    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
@@ -3194,9 +3207,12 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, M(X, p), V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0] + 0.0 * kinetic
-    return kinetic + 0.0 * potential, potential
+    inertia = M(X, p)
+    with np.errstate(all="ignore"):
+        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
+    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
+    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
+    return kinetic + known, potential + known
 
 
 def forward_kinematics(q_actuated, X0, p=None):
@@ -3262,7 +3278,7 @@ def rotation(X):
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
 
 
 def pose(t, R):
@@ -3270,6 +3286,12 @@ def pose(t, R):
     R = np.asarray(R, dtype=float)
     if R.shape[-2:] != (3, 3):
         raise ValueError(f"pose: R has shape {R.shape}, expected (..., 3, 3)")
+    with np.errstate(all="ignore"):
+        return _with_position(t, _quaternion(R))
+
+
+def _quaternion(R):
+    """x, y, z, w of rotation matrices (..., 3, 3)."""
     d = np.einsum("...ii->...i", R)
     # each candidate is four times the quaternion times one of its entries; take the longest
     s = (R[..., 2, 1] + R[..., 1, 2], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 0] + R[..., 0, 1])
@@ -3283,8 +3305,7 @@ def pose(t, R):
     ], axis=-2)
     best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
     q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
-    return _with_position(t, q)
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
 
 
 def _with_position(t, q):
@@ -3292,13 +3313,15 @@ def _with_position(t, q):
     t = _vector("pose", "t", t, _Q)
     lead = np.broadcast_shapes(t.shape[:-1], q.shape[:-1])
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
-    return np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1)
+    return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
 
 
 def pose_from_rpy(t, rpy):
     """X from roll, pitch, yaw (..., 3) about the fixed axes x, y, z, in that order."""
     half = 0.5 * _vector("pose_from_rpy", "rpy", rpy, 3)
-    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(np.cos(half), -1, 0), np.moveaxis(np.sin(half), -1, 0)
+    with np.errstate(all="ignore"):
+        cosines, sines = np.cos(half), np.sin(half)
+    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(cosines, -1, 0), np.moveaxis(sines, -1, 0)
     q = np.stack((
         sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
         cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
@@ -3310,11 +3333,13 @@ def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV)."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
     q, w = X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
-    vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
-    scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
+    with np.errstate(all="ignore"):
+        vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
+        scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
     lead = np.broadcast_shapes(X.shape[:-1], V.shape[:-1])
     parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
-    return np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
+    rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
+    return _known(rate, 1, X)
 
 
 def _moved(X, step):

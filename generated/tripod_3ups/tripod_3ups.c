@@ -11,13 +11,16 @@ typedef tripod_3ups_real real;
 typedef tripod_3ups_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? TRIPOD_3UPS_INVALID
+            : t->diverged[k] > 0 ? TRIPOD_3UPS_NOT_CONVERGED
             : t->unreachable[k] > 0 ? TRIPOD_3UPS_UNREACHABLE
             : t->singular[k] > 0 ? TRIPOD_3UPS_SINGULAR
-            : t->diverged[k] > 0 ? TRIPOD_3UPS_NOT_CONVERGED
             : t->overflow[k] > 0 ? TRIPOD_3UPS_INVALID : TRIPOD_3UPS_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == TRIPOD_3UPS_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != TRIPOD_3UPS_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -495,6 +515,320 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     return TRIPOD_3UPS_OK;
 }
 
+/* ---- linear equations ---- */
+
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
+{
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
+    }
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
+        }
+        for (size_t j = 0; j < stride; ++j) {
+            const real moved = a[best*stride + j];
+            a[best*stride + j] = a[p*stride + j];
+            a[p*stride + j] = moved;
+        }
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        x[p] *= a[p*stride + n];
+        for (size_t i = 0; i < p; ++i) {
+            a[i*stride + n] -= a[i*stride + p]*x[p];
+        }
+    }
+}
+
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+{
+    real swap[LANES], keep[LANES];
+    for (size_t k = 0; k < LANES; ++k) {
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
+    }
+    for (size_t j = p; j <= n; ++j) {
+        for (size_t k = 0; k < LANES; ++k) {
+            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+        }
+    }
+}
+
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
+INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
+{
+    const size_t row = (n + 1)*LANES;
+    for (size_t i = 0; i < n; ++i) {
+        real size[LANES] = {0};
+        for (size_t j = 0; j < n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
+            }
+        }
+        for (size_t k = 0; k < LANES; ++k) {
+            size[k] = 1/size[k];
+        }
+        for (size_t j = 0; j <= n; ++j) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + j*LANES + k] *= size[k];
+            }
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
+        for (size_t k = 0; k < LANES; ++k) {
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            x[p*LANES + k] = 1/pivot[p*LANES + k];
+        }
+        for (size_t i = p + 1; i < n; ++i) {
+            real *const other = a + i*row;
+            real factor[LANES];
+            for (size_t k = 0; k < LANES; ++k) {
+                factor[k] = other[p*LANES + k]*x[p*LANES + k];
+            }
+            for (size_t j = p + 1; j <= n; ++j) {
+                for (size_t k = 0; k < LANES; ++k) {
+                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
+                }
+            }
+        }
+    }
+    for (size_t p = n; p-- > 0;) {
+        for (size_t k = 0; k < LANES; ++k) {
+            x[p*LANES + k] *= a[p*row + n*LANES + k];
+        }
+        for (size_t i = 0; i < p; ++i) {
+            for (size_t k = 0; k < LANES; ++k) {
+                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
+            }
+        }
+    }
+}
+
+/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
+INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
+{
+    if (w == 1) {
+        solve_one(n, stride, a, x, singular);
+    } else {
+        solve_lanes(n, a, x, singular);
+    }
+}
+
+/* Add the wrench to a generalised force; extra coordinates get none. */
+INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
+{
+    for (size_t k = 0; k < w; ++k) {
+        for (size_t e = 0; e < 3; ++e) {
+            force[e*w + k] += sign*wrench[e*w + k];
+        }
+    }
+}
+
+#define BIG 3  /* largest number of rows or columns of what follows */
+
+/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
+   The reflection's vector is left in column p, the diagonal entry is returned. */
+INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
+{
+    real size = 0;
+    for (size_t i = p; i < rows; ++i) {
+        size += a[i*stride + p]*a[i*stride + p];
+    }
+    size = a[p*stride + p] > 0 ? -root(size) : root(size);
+    a[p*stride + p] -= size;
+    const real scale = a[p*stride + p]*size;
+    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
+        real sum = 0;
+        for (size_t i = p; i < rows; ++i) {
+            sum += a[i*stride + p]*a[i*stride + j];
+        }
+        for (size_t i = p; i < rows; ++i) {
+            a[i*stride + j] += sum/scale*a[i*stride + p];
+        }
+    }
+    return size;
+}
+
+/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
+   diagonal entry of the triangle of a^T as a fraction of the largest. */
+static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
+{
+    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
+    for (size_t i = 0; i < rows*columns; ++i) {
+        t[i%columns*rows + i/columns] = a[i];
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        diagonal[p] = reflect(columns, rows, p, t);
+        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
+        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
+    }
+    for (size_t p = 0; p < rows; ++p) {
+        u[p] = b[p];
+        for (size_t i = 0; i < p; ++i) {
+            u[p] -= t[i*rows + p]*u[i];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t p = rows; p-- > 0;) {
+        for (size_t j = p + 1; j < rows; ++j) {
+            u[p] -= t[p*rows + j]*u[j];
+        }
+        u[p] /= diagonal[p];
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        x[j] = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            x[j] += a[i*columns + j]*u[i];
+        }
+    }
+    return least/most;
+}
+
+#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
+
+/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
+   which is overwritten.  Columns that add less than RANK of the first are left out. */
+static void least_squares(size_t rows, size_t n, real *a, real *x)
+{
+    real r[BIG*BIG], b[BIG], diagonal[BIG];
+    size_t order[BIG], rank = 0;
+    for (size_t j = 0; j < n; ++j) {
+        order[j] = j;
+    }
+    for (; rank < rows && rank < n; ++rank) {
+        size_t best = rank;
+        real most = -1;
+        for (size_t j = rank; j < n; ++j) {
+            real size = 0;
+            for (size_t i = rank; i < rows; ++i) {
+                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
+            }
+            best = size > most ? j : best;
+            most = size > most ? size : most;
+        }
+        for (size_t i = 0; i < rows; ++i) {
+            const real moved = a[i*(n + 1) + best];
+            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
+            a[i*(n + 1) + rank] = moved;
+        }
+        const size_t moved = order[best];
+        order[best] = order[rank];
+        order[rank] = moved;
+        diagonal[rank] = reflect(rows, n + 1, rank, a);
+        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
+            break;
+        }
+    }
+    for (size_t i = 0; i < rank; ++i) {
+        b[i] = a[i*(n + 1) + n];
+        for (size_t j = 0; j < n; ++j) {
+            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
+        }
+    }
+    clear(x, n);
+    if (rank) {
+        least_norm(rank, n, r, b, x);
+    }
+}
+
+/* Residuals [m, rad] at which iterations stop, and that count as solved. */
+#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
+#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
+
+INLINE real largest(const real *x, size_t n)
+{
+    real size = 0;
+    for (size_t i = 0; i < n; ++i) {
+        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
+    }
+    return size;
+}
+
+/* Rows of [h^T | gap], h[3][n]. */
+INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
+{
+    for (size_t i = 0; i < n; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*4 + j] = h[j*n + i];
+        }
+        a[i*4 + 3] = gap[i];
+    }
+}
+
+/* X moved by a part of a small step. */
+static void moved(const real *X, const real *step, real part, real *to)
+{
+    for (size_t i = 0; i < 3; ++i) {
+        to[i] = X[i] + part*step[i];
+    }
+}
+
 /* ---- functions of the state: M, Z, H and the like ---- */
 
 /* ---- dynamics: 507 mul, 354 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
@@ -509,12 +843,12 @@ typedef struct {
 INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -533,7 +867,7 @@ INLINE void dynamics_before(size_t w, const real *X, const real *V, dynamics_val
 }
 
 INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_ups *o)
+    *s, size_t states, size_t count, int add, dynamics_results_ups *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -731,21 +1065,21 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
             axis_z_ups_axes2_in_base_y*c_o_z;
         const real U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y -
             axis_z_ups_axes2_in_base_z*c_o_z;
-        o->sum[0][k] = Q_t_10;  /* total_ups_xx */
-        o->sum[1][k] = Q_t_11;  /* total_ups_xy */
-        o->sum[2][k] = Q_t_12;  /* total_ups_xz */
-        o->sum[3][k] = Q_t_14;  /* total_ups_yy */
-        o->sum[4][k] = Q_t_15;  /* total_ups_yz */
-        o->sum[5][k] = Q_t_17;  /* total_ups_zz */
-        o->sum[6][k] = U_in_base_x;  /* total_ups_x */
-        o->sum[7][k] = U_in_base_y;  /* total_ups_y */
-        o->sum[8][k] = U_in_base_z;  /* total_ups_z */
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_ups_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_ups_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_ups_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
+        o->sum[7][k] = add ? o->sum[7][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
+        o->sum[8][k] = add ? o->sum[8][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = axis_x_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -807,21 +1141,24 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
     dynamics_results_ups results_ups;
     dynamics_before(w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        dynamics_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
+        dynamics_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
         for (size_t leg = 0; leg < 3; ++leg) {
             dynamics_place_ups(w, &results_ups, leg, leg, H, t);
         }
         for (size_t n = 0; n < 9; ++n) {
-            s->sum[n][0] = total(results_ups.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_ups(m, leg, 0, s, 1, w, &results_ups);
+            dynamics_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
             dynamics_place_ups(w, &results_ups, leg, 0, H, t);
-            for (size_t n = 0; n < 9; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_ups.sum[n][k] : results_ups.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 9; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
             }
         }
     }
@@ -831,15 +1168,15 @@ INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real 
 INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
     *Z, real *H, int *code)
 {
-    real M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
+    real X_in[3*LANES], V_in[3*LANES], M_of[9*LANES], Z_of[3*LANES], H_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
     dynamics_run(m, w, X, V, M_of, Z_of, H_of, t);
-    check_output(M_of, 9, w, t);
-    check_output(Z_of, 3, w, t);
-    check_output(H_of, 9, w, t);
+    check(9, w, M_of, t->overflow);
+    check(3, w, Z_of, t->overflow);
+    check(9, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 9, w, code, M);
     deliver(Z_of, 3, w, code, Z);
@@ -857,9 +1194,9 @@ typedef struct {
 INLINE void M_before(size_t w, const real *X, M_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -871,7 +1208,7 @@ INLINE void M_before(size_t w, const real *X, M_values *s)
 }
 
 INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_ups *o)
+    states, size_t count, int add, M_results_ups *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -989,15 +1326,15 @@ INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_value
             Q_t_7*axis_z_ups_axes2_in_base_z + Q_t_8*axis_z_ups_axes2_in_base_y;
         const real Q_t_16 = Q_t_5*axis_y_ups_axes2_z + Q_t_8*axis_z_ups_axes2_in_base_z;
         const real Q_t_17 = 2*Q_t_16;
-        o->sum[0][k] = Q_t_10;  /* total_ups_xx */
-        o->sum[1][k] = Q_t_11;  /* total_ups_xy */
-        o->sum[2][k] = Q_t_12;  /* total_ups_xz */
-        o->sum[3][k] = Q_t_14;  /* total_ups_yy */
-        o->sum[4][k] = Q_t_15;  /* total_ups_yz */
-        o->sum[5][k] = Q_t_17;  /* total_ups_zz */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_10 : Q_t_10;  /* total_ups_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_11 : Q_t_11;  /* total_ups_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_12 : Q_t_12;  /* total_ups_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -1040,21 +1377,24 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
     M_results_ups results_ups;
     M_before(w, X, s);
     if (w == 1) {  /* the legs side by side */
-        M_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
+        M_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
         for (size_t leg = 0; leg < 3; ++leg) {
             M_place_ups(w, &results_ups, leg, t);
         }
         for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_ups.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_ups(m, leg, 0, s, 1, w, &results_ups);
+            M_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
             M_place_ups(w, &results_ups, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_ups.sum[n][k] : results_ups.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
             }
         }
     }
@@ -1063,12 +1403,12 @@ INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *
 
 INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
 {
-    real M_of[9*LANES];
+    real X_in[3*LANES], M_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
+    X = take(3, w, X, X_in, t);
     M_run(m, w, X, M_of, t);
-    check_output(M_of, 9, w, t);
+    check(9, w, M_of, t->overflow);
     judge(t, w, code);
     deliver(M_of, 9, w, code, M);
 }
@@ -1085,12 +1425,12 @@ typedef struct {
 INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1109,7 +1449,7 @@ INLINE void Z_before(size_t w, const real *X, const real *V, Z_values *s)
 }
 
 INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_ups *o)
+    states, size_t count, int add, Z_results_ups *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1263,12 +1603,12 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
             axis_z_ups_axes2_in_base_y*c_o_z;
         const real U_in_base_z = axis_x_z*phi_3_o_x - axis_y_ups_axes2_z*c_o_y -
             axis_z_ups_axes2_in_base_z*c_o_z;
-        o->sum[0][k] = U_in_base_x;  /* total_ups_x */
-        o->sum[1][k] = U_in_base_y;  /* total_ups_y */
-        o->sum[2][k] = U_in_base_z;  /* total_ups_z */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
+        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -1304,21 +1644,24 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
     Z_results_ups results_ups;
     Z_before(w, X, V, s);
     if (w == 1) {  /* the legs side by side */
-        Z_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
+        Z_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
         for (size_t leg = 0; leg < 3; ++leg) {
             Z_place_ups(w, &results_ups, leg, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_ups.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_ups(m, leg, 0, s, 1, w, &results_ups);
+            Z_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
             Z_place_ups(w, &results_ups, 0, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_ups.sum[n][k] : results_ups.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
             }
         }
     }
@@ -1327,13 +1670,13 @@ INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, rea
 
 INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
 {
-    real Z_of[3*LANES];
+    real X_in[3*LANES], V_in[3*LANES], Z_of[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
     Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 3, w, t);
+    check(3, w, Z_of, t->overflow);
     judge(t, w, code);
     deliver(Z_of, 3, w, code, Z);
 }
@@ -1349,9 +1692,9 @@ typedef struct {
 INLINE void H_before(size_t w, const real *X, H_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1414,8 +1757,8 @@ INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = axis_x_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_2) >
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_2) >
             TOLERANCE*size_);
     }
 }
@@ -1451,12 +1794,12 @@ INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *
 
 INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
 {
-    real H_of[9*LANES];
+    real X_in[3*LANES], H_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
+    X = take(3, w, X, X_in, t);
     H_run(m, w, X, H_of, t);
-    check_output(H_of, 9, w, t);
+    check(9, w, H_of, t->overflow);
     judge(t, w, code);
     deliver(H_of, 9, w, code, H);
 }
@@ -1475,15 +1818,15 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
     *A, required_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -1524,7 +1867,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
 }
 
 INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_ups *o)
+    *s, size_t states, size_t count, int add, required_results_ups *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -1690,15 +2033,15 @@ INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const 
             axis_x_y*phi_3_x;
         const real c_in_base_z = axis_y_ups_axes2_z*c_y + axis_z_ups_axes2_in_base_z*c_z -
             axis_x_z*phi_3_x;
-        o->sum[0][k] = c_in_base_x;  /* total_ups_x */
-        o->sum[1][k] = c_in_base_y;  /* total_ups_y */
-        o->sum[2][k] = c_in_base_z;  /* total_ups_z */
+        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_ups_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_ups_y */
+        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_ups_z */
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = axis_x_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -1739,21 +2082,24 @@ INLINE void required_run(const prepared *m, size_t w, const real *X, const real 
     required_results_ups results_ups;
     required_before(m, w, X, V, A, s);
     if (w == 1) {  /* the legs side by side */
-        required_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
+        required_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
         for (size_t leg = 0; leg < 3; ++leg) {
             required_place_ups(w, &results_ups, leg, leg, H, t);
         }
         for (size_t n = 0; n < 3; ++n) {
-            s->sum[n][0] = total(results_ups.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_ups(m, leg, 0, s, 1, w, &results_ups);
+            required_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
             required_place_ups(w, &results_ups, leg, 0, H, t);
-            for (size_t n = 0; n < 3; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_ups.sum[n][k] : results_ups.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 3; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
             }
         }
     }
@@ -1771,9 +2117,9 @@ typedef struct {
 INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1840,8 +2186,8 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t le
         o->entry[0][k] = q_1;
         o->entry[1][k] = q_2;
         o->entry[2][k] = root_2;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
     }
 }
 
@@ -1877,12 +2223,12 @@ INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, r
 
 INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
 {
-    real q_of[9*LANES];
+    real X_in[3*LANES], q_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
+    X = take(3, w, X, X_in, t);
     inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 9, w, t);
+    check(9, w, q_of, t->overflow);
     judge(t, w, code);
     deliver(q_of, 9, w, code, q);
 }
@@ -1898,12 +2244,12 @@ typedef struct {
 INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -1997,9 +2343,9 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, con
         o->entry[0][k] = qd_1;
         o->entry[1][k] = qd_2;
         o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -2036,13 +2382,13 @@ INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const re
 INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
     *rates, int *code)
 {
-    real qd_of[9*LANES];
+    real X_in[3*LANES], V_in[3*LANES], qd_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
     joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 9, w, t);
+    check(9, w, qd_of, t->overflow);
     judge(t, w, code);
     deliver(qd_of, 9, w, code, rates);
 }
@@ -2060,15 +2406,15 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
     joint_accelerations_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2192,9 +2538,9 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = qdd_2;
         o->entry[2][k] = rel_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -2231,14 +2577,14 @@ INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, 
 INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
     const real *A, real *accelerations, int *code)
 {
-    real qdd_of[9*LANES];
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], qdd_of[9*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(A, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    A = take(3, w, A, A_in, t);
     joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 9, w, t);
+    check(9, w, qdd_of, t->overflow);
     judge(t, w, code);
     deliver(qdd_of, 9, w, code, accelerations);
 }
@@ -2255,15 +2601,15 @@ typedef struct {
 INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
-        const real V_0 = V[3*k + 0];
-        const real V_1 = V[3*k + 1];
-        const real V_2 = V[3*k + 2];
-        const real A_0 = A[3*k + 0];
-        const real A_1 = A[3*k + 1];
-        const real A_2 = A[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
         /* X: named entries */
         const real t_x = X_0;
         const real t_y = X_1;
@@ -2465,9 +2811,9 @@ INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[3][k] = axis_x_x;
         o->entry[4][k] = axis_x_y;
         o->entry[5][k] = axis_x_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_1) >
-            TOLERANCE*size_) + unless(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
+            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
     }
 }
 
@@ -2515,9 +2861,9 @@ typedef struct {
 INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s)
 {
     for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[3*k + 0];
-        const real X_1 = X[3*k + 1];
-        const real X_2 = X[3*k + 2];
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
         const real gravity_x = m->gravity_x;
         const real gravity_y = m->gravity_y;
         const real gravity_z = m->gravity_z;
@@ -2540,7 +2886,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
 }
 
 INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_ups *o)
+    *s, size_t states, size_t count, int add, potential_results_ups *o)
 {
     for (size_t k = 0; k < count; ++k) {
         const size_t i = leg + legs*k;
@@ -2616,9 +2962,9 @@ INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const
             ups_link2_mass*(b_r0_y*s_1 - b_r0_x*c_1)) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x + h_3_x +
             ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) - (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z
             - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2));
-        o->sum[0][k] = potential_t_2;  /* total_ups */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_ups */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
     }
 }
 
@@ -2647,299 +2993,28 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_results_ups results_ups;
     potential_before(m, w, X, s);
     if (w == 1) {  /* the legs side by side */
-        potential_legs_ups(m, 0, 1, s, 0, 3, &results_ups);
+        potential_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
         for (size_t leg = 0; leg < 3; ++leg) {
             potential_place_ups(w, &results_ups, leg, t);
         }
         for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_ups.sum[n], 3);
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
         }
     } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
         for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_ups(m, leg, 0, s, 1, w, &results_ups);
+            potential_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
             potential_place_ups(w, &results_ups, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_ups.sum[n][k] : results_ups.sum[n][k];
-                }
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
             }
         }
     }
     potential_after(w, s, potential);
-}
-
-/* ---- linear equations ---- */
-
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
-{
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
-        for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        x[p] *= a[p*stride + n];
-        for (size_t i = 0; i < p; ++i) {
-            a[i*stride + n] -= a[i*stride + p]*x[p];
-        }
-    }
-}
-
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
-{
-    real larger[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
-    }
-    for (size_t j = p; j <= n; ++j) {
-        for (size_t k = 0; k < LANES; ++k) {
-            const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
-        }
-    }
-}
-
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
-INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
-{
-    const size_t row = (n + 1)*LANES;
-    for (size_t i = 0; i < n; ++i) {
-        real size[LANES] = {0};
-        for (size_t j = 0; j < n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
-            }
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            size[k] = 1/size[k];
-        }
-        for (size_t j = 0; j <= n; ++j) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + j*LANES + k] *= size[k];
-            }
-        }
-    }
-    for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
-        for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
-            x[p*LANES + k] = 1/pivot[p*LANES + k];
-        }
-        for (size_t i = p + 1; i < n; ++i) {
-            real *const other = a + i*row;
-            real factor[LANES];
-            for (size_t k = 0; k < LANES; ++k) {
-                factor[k] = other[p*LANES + k]*x[p*LANES + k];
-            }
-            for (size_t j = p + 1; j <= n; ++j) {
-                for (size_t k = 0; k < LANES; ++k) {
-                    other[j*LANES + k] -= factor[k]*pivot[j*LANES + k];
-                }
-            }
-        }
-    }
-    for (size_t p = n; p-- > 0;) {
-        for (size_t k = 0; k < LANES; ++k) {
-            x[p*LANES + k] *= a[p*row + n*LANES + k];
-        }
-        for (size_t i = 0; i < p; ++i) {
-            for (size_t k = 0; k < LANES; ++k) {
-                a[i*row + n*LANES + k] -= a[i*row + p*LANES + k]*x[p*LANES + k];
-            }
-        }
-    }
-}
-
-/* Systems of w states side by side: entry (i, j) of state k is a[(i*stride + j)*w + k]. */
-INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *singular)
-{
-    if (w == 1) {
-        solve_one(n, stride, a, x, singular);
-    } else {
-        solve_lanes(n, a, x, singular);
-    }
-}
-
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
-INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
-{
-    for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < 3; ++e) {
-            force[e*w + k] += sign*wrench[3*k + e];
-        }
-    }
-}
-
-#define BIG 3  /* largest number of rows or columns of what follows */
-
-/* Reflect rows p, p + 1, ... so that column p is zero below row p; columns beyond go along.
-   The reflection's vector is left in column p, the diagonal entry is returned. */
-INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
-{
-    real size = 0;
-    for (size_t i = p; i < rows; ++i) {
-        size += a[i*stride + p]*a[i*stride + p];
-    }
-    size = a[p*stride + p] > 0 ? -root(size) : root(size);
-    a[p*stride + p] -= size;
-    const real scale = a[p*stride + p]*size;
-    for (size_t j = p + 1; j < stride && magnitude(scale) > 0; ++j) {
-        real sum = 0;
-        for (size_t i = p; i < rows; ++i) {
-            sum += a[i*stride + p]*a[i*stride + j];
-        }
-        for (size_t i = p; i < rows; ++i) {
-            a[i*stride + j] += sum/scale*a[i*stride + p];
-        }
-    }
-    return size;
-}
-
-/* The shortest x with a x = b for independent rows of a[rows][columns]; returns the smallest
-   diagonal entry of the triangle of a^T as a fraction of the largest. */
-static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
-{
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        diagonal[p] = reflect(columns, rows, p, t);
-        least = p == 0 || magnitude(diagonal[p]) < least ? magnitude(diagonal[p]) : least;
-        most = magnitude(diagonal[p]) > most ? magnitude(diagonal[p]) : most;
-    }
-    for (size_t p = 0; p < rows; ++p) {
-        u[p] = b[p];
-        for (size_t i = 0; i < p; ++i) {
-            u[p] -= t[i*rows + p]*u[i];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t p = rows; p-- > 0;) {
-        for (size_t j = p + 1; j < rows; ++j) {
-            u[p] -= t[p*rows + j]*u[j];
-        }
-        u[p] /= diagonal[p];
-    }
-    for (size_t j = 0; j < columns; ++j) {
-        x[j] = 0;
-        for (size_t i = 0; i < rows; ++i) {
-            x[j] += a[i*columns + j]*u[i];
-        }
-    }
-    return least/most;
-}
-
-#define RANK BY_TYPE(1e-4, 1e-10, 1e-10)  /* smaller than this fraction counts as zero */
-
-/* The shortest x of those for which a x - b is shortest; b stands in column n of a[rows][n + 1],
-   which is overwritten.  Columns that add less than RANK of the first are left out. */
-static void least_squares(size_t rows, size_t n, real *a, real *x)
-{
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
-    for (size_t j = 0; j < n; ++j) {
-        order[j] = j;
-    }
-    for (; rank < rows && rank < n; ++rank) {
-        size_t best = rank;
-        real most = -1;
-        for (size_t j = rank; j < n; ++j) {
-            real size = 0;
-            for (size_t i = rank; i < rows; ++i) {
-                size += a[i*(n + 1) + j]*a[i*(n + 1) + j];
-            }
-            best = size > most ? j : best;
-            most = size > most ? size : most;
-        }
-        for (size_t i = 0; i < rows; ++i) {
-            const real moved = a[i*(n + 1) + best];
-            a[i*(n + 1) + best] = a[i*(n + 1) + rank];
-            a[i*(n + 1) + rank] = moved;
-        }
-        const size_t moved = order[best];
-        order[best] = order[rank];
-        order[rank] = moved;
-        diagonal[rank] = reflect(rows, n + 1, rank, a);
-        if (!(magnitude(diagonal[rank]) > RANK*magnitude(diagonal[0]))) {
-            break;
-        }
-    }
-    for (size_t i = 0; i < rank; ++i) {
-        b[i] = a[i*(n + 1) + n];
-        for (size_t j = 0; j < n; ++j) {
-            r[i*n + order[j]] = j < i ? 0 : j == i ? diagonal[i] : a[i*(n + 1) + j];
-        }
-    }
-    clear(x, n);
-    if (rank) {
-        least_norm(rank, n, r, b, x);
-    }
-}
-
-/* Residuals [m, rad] at which iterations stop, and that count as solved. */
-#define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
-#define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
-
-INLINE real largest(const real *x, size_t n)
-{
-    real size = 0;
-    for (size_t i = 0; i < n; ++i) {
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-    }
-    return size;
-}
-
-/* Rows of [h^T | gap], h[3][n]. */
-INLINE void fill_rows(size_t n, const real *h, const real *gap, real *a)
-{
-    for (size_t i = 0; i < n; ++i) {
-        for (size_t j = 0; j < 3; ++j) {
-            a[i*4 + j] = h[j*n + i];
-        }
-        a[i*4 + 3] = gap[i];
-    }
-}
-
-/* X moved by a part of a small step. */
-static void moved(const real *X, const real *step, real part, real *to)
-{
-    for (size_t i = 0; i < 3; ++i) {
-        to[i] = X[i] + part*step[i];
-    }
 }
 
 /* ---- forces and accelerations ---- */
@@ -2950,16 +3025,16 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2};  /* on which drives act */
     enum { N = 3, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[3*LANES], V_in[3*LANES], A_in[3*LANES], wrench_in[3*LANES];
     real force[3*LANES], H[9*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(A, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    A = take(3, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, t);
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
@@ -2970,7 +3045,7 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, tau);
 }
@@ -2980,26 +3055,26 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 3, PADDED = 4 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[3*LANES], V_in[3*LANES], tau_in[3*LANES], wrench_in[3*LANES];
     real M[9*LANES], Z[3*LANES], H[9*LANES];
     real force[3*LANES], a[N*PADDED*LANES], x[N*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 3, w, t);
-    check_input(V, 3, w, t);
-    check_input(tau, 3, w, t);
+    X = take(3, w, X, X_in, t);
+    V = take(3, w, V, V_in, t);
+    tau = take(3, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, t);
     for (size_t i = 0; i < 3; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[3*k + j];
+                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 3, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(3, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 3; ++i) {
@@ -3011,7 +3086,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, A);
 }
@@ -3021,14 +3096,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 3);
+    const int code = all_finite(A, 3) ? TRIPOD_3UPS_OK : TRIPOD_3UPS_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 3; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? TRIPOD_3UPS_OK : TRIPOD_3UPS_INVALID;
+    deliver(A, 3, 1, &code, completed);
+    return code;
 }
 
 int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -3039,7 +3112,7 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
     verdict values, *const t = &values;
     int code = tripod_3ups_inverse_dynamics(m, X, V, A, wrench, tau);
     if (code != TRIPOD_3UPS_OK) {
-        deliver(leg_force, 9, 1, &code, forces);
+        refuse(9, forces);
         return code;
     }
     start(1, t);
@@ -3049,7 +3122,7 @@ int tripod_3ups_leg_reactions(const prepared *m, const real *X, const real *V, c
             leg_force[3*driven[i] + e] += tau[i]*drive[3*i + e];
         }
     }
-    check_output(leg_force, 9, 1, t);
+    check(9, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 9, 1, &code, forces);
     return code;
@@ -3061,8 +3134,8 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 3, 1, t);
-    check_input(V, 3, 1, t);
+    check(3, 1, X, t->invalid);
+    check(3, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 3; ++i) {
@@ -3070,7 +3143,7 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
             energies[0] += V[i]*M[i*3 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

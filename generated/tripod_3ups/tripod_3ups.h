@@ -14,9 +14,9 @@
  * wrench: fx, fy, fz
  *
  * Every function returns TRIPOD_3UPS_OK or why the state is impossible; then all its outputs are
- * NaN.  Of several causes the first counts: input that is not finite (INVALID), a leg that does
- * not reach (UNREACHABLE), a singular leg or matrix (SINGULAR), no convergence, a result that is
- * not finite (INVALID).  Functions ..._batch take n states one after another, write n codes to
+ * NaN.  Of several causes the first counts: input that is not finite (INVALID), no convergence
+ * (NOT_CONVERGED), a leg that does not reach (UNREACHABLE), a singular leg or matrix (SINGULAR),
+ * a result that is not finite (INVALID).  Functions ..._batch take n states one after another, write n codes to
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *

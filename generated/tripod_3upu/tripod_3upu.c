@@ -11,13 +11,16 @@ typedef tripod_3upu_real real;
 typedef tripod_3upu_model prepared;
 
 #define R(x) ((real)(x))
+#define UNLESS(condition) ((condition) ? R(0) : R(1))  /* flag of what must hold */
 #define LANES 8  /* states that a batch runs side by side */
 
 /* Parts are inlined so that the numbers of states and of legs are constants in them. */
 #if defined(__GNUC__)
 #define INLINE static inline __attribute__((always_inline, unused))
+#define APART static __attribute__((noinline, unused))  /* faster as a call: many and rare */
 #else
 #define INLINE static inline
+#define APART static
 #endif
 
 /* A constant that depends on the precision: float, double, long double. */
@@ -42,6 +45,11 @@ INLINE real angle(real y, real x)
         atan2l((long double)y, (long double)x));
 }
 
+INLINE real larger(real x, real y)
+{
+    return x > y ? x : y;
+}
+
 INLINE real total(const real *x, size_t n)
 {
     real sum = x[0];
@@ -63,12 +71,6 @@ INLINE int is_finite(real x)
     return x - x == 0;
 }
 
-/* Flag of a condition that must hold: 0 where it does, 1 where not. */
-INLINE real unless(int condition)
-{
-    return condition ? R(0) : R(1);
-}
-
 /* Why states are impossible, by state: more than 0 where a cause holds. */
 typedef struct {
     real invalid[LANES], unreachable[LANES], singular[LANES], diverged[LANES], overflow[LANES];
@@ -81,47 +83,74 @@ INLINE void start(size_t w, verdict *t)
     }
 }
 
-/* Input is given state by state. */
-INLINE void check_input(const real *x, size_t size, size_t w, verdict *t)
+/* x - x is 0 for every number and NaN for the rest; sums side by side add up fast. */
+INLINE int all_finite(const real *x, size_t n)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[size*k + e]);
+    real sum[LANES] = {0};
+    const size_t most = n - n%LANES;
+    for (size_t i = 0; i < most; i += LANES) {
+        for (size_t k = 0; k < LANES; ++k) {
+            sum[k] += x[i + k] - x[i + k];
         }
-        t->invalid[k] += unless(ok);
+    }
+    for (size_t i = most; i < n; ++i) {
+        sum[0] += x[i] - x[i];
+    }
+    return total(sum, LANES) == 0;
+}
+
+/* Flag the states with entries that are not finite; the states stand side by side. */
+INLINE void check(size_t size, size_t w, const real *x, real *flags)
+{
+    if (!all_finite(x, size*w)) {
+        for (size_t i = 0; i < size*w; ++i) {
+            flags[i%w] += UNLESS(is_finite(x[i]));
+        }
     }
 }
 
-/* Output is collected entry by entry, its states side by side. */
-INLINE void check_output(const real *x, size_t size, size_t w, verdict *t)
+/* Input, given state by state, with its states side by side: entry e of state k at e*w + k. */
+INLINE const real *take(size_t size, size_t w, const real *x, real *lanes, verdict *t)
 {
-    for (size_t k = 0; k < w; ++k) {
-        int ok = 1;
-        for (size_t e = 0; e < size; ++e) {
-            ok &= is_finite(x[e*w + k]);
+    for (size_t e = 0; e < size && w > 1; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            lanes[e*w + k] = x[size*k + e];
         }
-        t->overflow[k] += unless(ok);
     }
+    check(size, w, w > 1 ? lanes : x, t->invalid);
+    return w > 1 ? lanes : x;
 }
 
 INLINE void judge(const verdict *t, size_t w, int *code)
 {
     for (size_t k = 0; k < w; ++k) {
         code[k] = t->invalid[k] > 0 ? TRIPOD_3UPU_INVALID
+            : t->diverged[k] > 0 ? TRIPOD_3UPU_NOT_CONVERGED
             : t->unreachable[k] > 0 ? TRIPOD_3UPU_UNREACHABLE
             : t->singular[k] > 0 ? TRIPOD_3UPU_SINGULAR
-            : t->diverged[k] > 0 ? TRIPOD_3UPU_NOT_CONVERGED
             : t->overflow[k] > 0 ? TRIPOD_3UPU_INVALID : TRIPOD_3UPU_OK;
+    }
+}
+
+/* Outputs of an impossible state. */
+INLINE void refuse(size_t size, real *out)
+{
+    for (size_t e = 0; e < size; ++e) {
+        out[e] = R(NAN);
     }
 }
 
 /* Outputs state by state; NaN where a state is impossible. */
 INLINE void deliver(const real *x, size_t size, size_t w, const int *code, real *out)
 {
+    for (size_t e = 0; e < size; ++e) {
+        for (size_t k = 0; k < w; ++k) {
+            out[size*k + e] = x[e*w + k];
+        }
+    }
     for (size_t k = 0; k < w; ++k) {
-        for (size_t e = 0; e < size; ++e) {
-            out[size*k + e] = code[k] == TRIPOD_3UPU_OK ? x[e*w + k] : R(NAN);
+        if (code[k] != TRIPOD_3UPU_OK) {
+            refuse(size, out + size*k);
         }
     }
 }
@@ -142,15 +171,6 @@ INLINE size_t record(const int *code, size_t w, int *status)
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
 #define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
-
-INLINE int all_finite(const real *x, size_t n)
-{
-    int ok = 1;
-    for (size_t i = 0; i < n; ++i) {
-        ok &= is_finite(x[i]);
-    }
-    return ok;
-}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
@@ -281,6 +301,7 @@ static int acceptable(const tripod_3upu_params *p)
     ok &= all_rotations(&p->upu_base_frame[0][0][0], 3);
     ok &= all_finite(&p->upu_platform_point[0][0], 9);
     ok &= all_finite(&p->upu_platform_joint_axis_platform[0][0], 9);
+    ok &= all_unit(&p->upu_platform_joint_axis_platform[0][0], 3);
     ok &= all_finite(&p->upu_link2_mass[0], 3);
     ok &= none_negative(&p->upu_link2_mass[0], 3);
     ok &= all_finite(&p->upu_link2_centre_of_mass[0][0], 9);
@@ -407,8 +428,8 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
             upu_platform_point_y*upu_platform_point_y + upu_platform_point_z*upu_platform_point_z;
         const real size_t_3 = size_t_ + size_t_2;
         const real size_ = root(size_t_3);
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_t = size_*size_t_3;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t = size_*size_t_3;
         /* (upu-G4) first moment of link 3 about the origin of link 3 */
         const real h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass;
         const real h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass;
@@ -490,7 +511,6 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->h_3_x[leg] = h_3_x;
         model->h_3_y[leg] = h_3_y;
         model->h_3_z[leg] = h_3_z;
-        model->n_c1_t[leg] = n_c1_t;
         model->size_[leg] = size_;
         model->size_t_3[leg] = size_t_3;
         model->upu_base_frame_xx[leg] = upu_base_frame_xx;
@@ -513,5082 +533,67 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_platform_point_x[leg] = upu_platform_point_x;
         model->upu_platform_point_y[leg] = upu_platform_point_y;
         model->upu_platform_point_z[leg] = upu_platform_point_z;
+        model->volume_c_t[leg] = volume_c_t;
     }
     return TRIPOD_3UPU_OK;
 }
 
-/* ---- functions of the state: M, Z, H and the like ---- */
-
-/* ---- dynamics: 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES],
-        J_star_t_11[LANES], J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES],
-        J_star_t_17[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
-        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
-} dynamics_values;
-typedef struct {
-    real sum[27][8], entry[13][8], singular[8];
-} dynamics_results_upu;
-
-INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
-    dynamics_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
-        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_11[k] = J_star_t_11;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_14[k] = J_star_t_14;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->J_star_t_17[k] = J_star_t_17;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const dynamics_values
-    *s, size_t states, size_t count, dynamics_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c1_z;
-        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_w_1_t_25*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
-        /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d_acc_3_t = d_alpha_1_t_2*root_2;
-        /* (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_z*inv_root_2;
-        const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
-        /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
-            d_alpha_1_t*h_3_z));
-        /* (upu-N40) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
-            d_alpha_1_t*h_3_y*root_2);
-        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
-            h_3_x*inv_root_2)) - upu_link3_mass;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
-            axis_z_upu_axes2_in_base_x*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
-            axis_z_upu_axes2_in_base_y*d_G_t;
-        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
-            axis_z_upu_axes2_in_base_z*d_G_t;
-        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
-        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
-        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
-        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
-        const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
-        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
-            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
-        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
-        const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
-        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
-        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
-        const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
-        /* (upu-V14) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
-        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d0_alpha_1_xx = o_1_x*s_2;
-        const real d0_alpha_1_xy = o_1_y*s_2;
-        const real d0_alpha_1_yx = c_2*o_1_x;
-        const real d0_alpha_1_yy = c_2*o_1_y;
-        /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
-        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
-        /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
-        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
-        /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
-            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
-            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
-            d0_alpha_1_yx*h_3_x));
-        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
-            d0_alpha_1_xy*h_3_z));
-        /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
-        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
-        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
-            - J_group_2_xz*d0_alpha_1_xx);
-        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
-            - d0_alpha_1_xy*h_3_y*root_2);
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_6 = Q_t_17*q_in_base_x;
-        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
-        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
-        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
-        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
-        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
-        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
-        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
-        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
-        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
-        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
-        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
-        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
-        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
-        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
-        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
-        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
-        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
-        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
-        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
-        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
-        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
-        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
-        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
-        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
-        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
-            J_group_2_yz*c_2*inv_root_2);
-        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
-        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
-        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
-        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
-        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
-        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
-        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
-        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
-            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
-            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
-        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
-            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
-            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
-        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
-            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
-            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
-            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
-            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
-            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
-            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
-            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V17) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y +
-            n_m1_in_base_z*omega_z;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
-            eta_1*n_c1_z);
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t*qd_1_t;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
-            axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
-        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
-            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
-        const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1);
-        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
-        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upu-A26) acceleration tensor of link 2 */
-        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
-            axis_x_upu_axes2_z*u_1_z - g_r3_x;
-        const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
-        const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
-        /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real f_3_o_x = acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y -
-            h_3_x*(W_2_t_2 + W_2_t_3);
-        const real f_3_o_y = acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t +
-            W_2_t_3) - alpha_1_o_t*h_3_y;
-        const real f_3_o_z = B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z -
-            h_3_y*(W_2_t + W_2_t_2);
-        /* (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 +
-            J_group_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
-            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
-            Sigma_2_xx*qdd_1_o_t_2 + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real N_2_o_y = mu_2_o_y - f_3_o_z*root_2;
-        const real N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2;
-        /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
-        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
-        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z;
-        /* (upu-N59) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
-            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
-        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
-            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
-        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
-            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
-        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
-        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
-            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
-            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
-            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
-        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
-        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = n_m1_in_base_x + n_c1_t_3*q_in_base_z - n_c1_t_4*q_in_base_y;
-        const real Hk_a_1_y = n_m1_in_base_y + n_c1_t_4*q_in_base_x - n_c1_t_2*q_in_base_z;
-        const real Hk_a_1_z = n_m1_in_base_z + n_c1_t_2*q_in_base_y - n_c1_t_3*q_in_base_x;
-        /* (M11) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1 = nu_1 - n_c1_z*rel_o_z;
-        o->sum[0][k] = Q_t_12;  /* total_upu_xx */
-        o->sum[1][k] = Q_t_13;  /* total_upu_xy */
-        o->sum[2][k] = Q_t_14;  /* total_upu_xz */
-        o->sum[3][k] = Q_t_16;  /* total_upu_yy */
-        o->sum[4][k] = Q_t_17;  /* total_upu_yz */
-        o->sum[5][k] = Q_t_19;  /* total_upu_zz */
-        o->sum[6][k] = M_ta_t_12;  /* total_upu_xx_2 */
-        o->sum[7][k] = M_ta_t_13;  /* total_upu_xy_2 */
-        o->sum[8][k] = M_ta_t_14;  /* total_upu_xz_2 */
-        o->sum[9][k] = M_ta_t_15;  /* total_upu_yx */
-        o->sum[10][k] = M_ta_t_16;  /* total_upu_yy_2 */
-        o->sum[11][k] = M_ta_t_17;  /* total_upu_yz_2 */
-        o->sum[12][k] = M_ta_t_18;  /* total_upu_zx */
-        o->sum[13][k] = M_ta_t_19;  /* total_upu_zy */
-        o->sum[14][k] = M_ta_t_20;  /* total_upu_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_upu_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_upu_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_upu_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_upu_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_upu_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_upu_zz_3 */
-        o->sum[21][k] = U_in_base_x;  /* total_upu_x */
-        o->sum[22][k] = U_in_base_y;  /* total_upu_y */
-        o->sum[23][k] = U_in_base_z;  /* total_upu_z */
-        o->sum[24][k] = Z_a_t;  /* total_upu_x_2 */
-        o->sum[25][k] = Z_a_t_2;  /* total_upu_y_2 */
-        o->sum[26][k] = Z_a_t_3;  /* total_upu_z_2 */
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c1_t_2;
-        o->entry[7][k] = -n_c1_t_3;
-        o->entry[8][k] = -n_c1_t_4;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->entry[12][k] = gamma_c1;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void dynamics_place_upu(size_t w, const dynamics_results_upu *o, size_t leg, size_t first,
-    real *H, real *Hk, real *constraint_bias, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        constraint_bias[(leg)*w + k] = o->entry[12][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
-    *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_11 = s->J_star_t_11[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_14 = s->J_star_t_14[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real J_star_t_17 = s->J_star_t_17[k];
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_upu_xx = s->sum[0][k];
-        const real total_upu_xy = s->sum[1][k];
-        const real total_upu_xz = s->sum[2][k];
-        const real total_upu_yy = s->sum[3][k];
-        const real total_upu_yz = s->sum[4][k];
-        const real total_upu_zz = s->sum[5][k];
-        const real total_upu_xx_2 = s->sum[6][k];
-        const real total_upu_xy_2 = s->sum[7][k];
-        const real total_upu_xz_2 = s->sum[8][k];
-        const real total_upu_yx = s->sum[9][k];
-        const real total_upu_yy_2 = s->sum[10][k];
-        const real total_upu_yz_2 = s->sum[11][k];
-        const real total_upu_zx = s->sum[12][k];
-        const real total_upu_zy = s->sum[13][k];
-        const real total_upu_zz_2 = s->sum[14][k];
-        const real total_upu_xx_3 = s->sum[15][k];
-        const real total_upu_xy_3 = s->sum[16][k];
-        const real total_upu_xz_3 = s->sum[17][k];
-        const real total_upu_yy_3 = s->sum[18][k];
-        const real total_upu_yz_3 = s->sum[19][k];
-        const real total_upu_zz_3 = s->sum[20][k];
-        const real total_upu_x = s->sum[21][k];
-        const real total_upu_y = s->sum[22][k];
-        const real total_upu_z = s->sum[23][k];
-        const real total_upu_x_2 = s->sum[24][k];
-        const real total_upu_y_2 = s->sum[25][k];
-        const real total_upu_z_2 = s->sum[26][k];
-        const real platform_mass = m->platform_mass;
-        /* (M1) translational block of M */
-        const real M_tt_xx = platform_mass + total_upu_xx;
-        const real M_tt_yy = platform_mass + total_upu_yy;
-        const real M_tt_zz = platform_mass + total_upu_zz;
-        /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
-        const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
-        const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
-        const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
-        const real M_ta_zx = h_star_in_base_y - total_upu_zx;
-        const real M_ta_zy = total_upu_zy - h_star_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
-        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
-        const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
-        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
-        const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
-        const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_upu_x;
-        const real Z_t_y = Z_p_y + total_upu_y;
-        const real Z_t_z = Z_p_z + total_upu_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
-        const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
-        const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_upu_xy;
-        M[6*w + k] = total_upu_xy;
-        M[2*w + k] = total_upu_xz;
-        M[12*w + k] = total_upu_xz;
-        M[7*w + k] = M_tt_yy;
-        M[8*w + k] = total_upu_yz;
-        M[13*w + k] = total_upu_yz;
-        M[14*w + k] = M_tt_zz;
-        M[3*w + k] = -total_upu_xx_2;
-        M[18*w + k] = -total_upu_xx_2;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
-        M[10*w + k] = total_upu_yy_2;
-        M[25*w + k] = total_upu_yy_2;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
-        M[17*w + k] = total_upu_zz_2;
-        M[32*w + k] = total_upu_zz_2;
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-    }
-}
-
-INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, real *Hk, real *constraint_bias, verdict *t)
-{
-    dynamics_values values, *const s = &values;
-    dynamics_results_upu results_upu;
-    dynamics_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        dynamics_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_place_upu(w, &results_upu, leg, leg, H, Hk, constraint_bias, t);
-        }
-        for (size_t n = 0; n < 27; ++n) {
-            s->sum[n][0] = total(results_upu.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            dynamics_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            dynamics_place_upu(w, &results_upu, leg, 0, H, Hk, constraint_bias, t);
-            for (size_t n = 0; n < 27; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_upu.sum[n][k] : results_upu.sum[n][k];
-                }
-            }
-        }
-    }
-    dynamics_after(m, w, s, M, Z);
-}
-
-INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
-    *Z, real *H, int *code)
-{
-    real M_of[36*LANES], Z_of[6*LANES], H_of[18*LANES], Hk_of[18*LANES], constraint_bias_of[3*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    dynamics_run(m, w, X, V, M_of, Z_of, H_of, Hk_of, constraint_bias_of, t);
-    check_output(M_of, 36, w, t);
-    check_output(Z_of, 6, w, t);
-    check_output(H_of, 18, w, t);
-    judge(t, w, code);
-    deliver(M_of, 36, w, code, M);
-    deliver(Z_of, 6, w, code, Z);
-    deliver(H_of, 18, w, code, H);
-}
-
-/* ---- M: 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
-        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES], J_star_t_11[LANES],
-        J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES], J_star_t_17[LANES],
-        sum[21][LANES];
-} M_values;
-typedef struct {
-    real sum[21][8], singular[8];
-} M_results_upu;
-
-INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real J_star_t_6 = m->J_star_t_6;
-        const real J_star_t_8 = m->J_star_t_8;
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yz = m->J_star_yz;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
-        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
-        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
-        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
-        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
-        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
-            J_star_t_5*R_xz;
-        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
-            J_star_t_7*R_xz;
-        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
-        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
-        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
-            J_star_t_7*R_yz;
-        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
-        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->h_star_in_base_x[k] = h_star_in_base_x;
-        s->h_star_in_base_y[k] = h_star_in_base_y;
-        s->h_star_in_base_z[k] = h_star_in_base_z;
-        s->J_star_t_10[k] = J_star_t_10;
-        s->J_star_t_11[k] = J_star_t_11;
-        s->J_star_t_12[k] = J_star_t_12;
-        s->J_star_t_14[k] = J_star_t_14;
-        s->J_star_t_15[k] = J_star_t_15;
-        s->J_star_t_17[k] = J_star_t_17;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
-    states, size_t count, M_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real J_group_2_xx = m->J_group_2_xx[i];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yy = m->J_group_2_yy[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real J_group_2_zz = m->J_group_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        const real w_1_t_4 = inv_w_1_t_25*n_c1_z;
-        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d_alpha_1_t = inv_w_1_t_25*s_2;
-        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
-        /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d_acc_3_t = d_alpha_1_t_2*root_2;
-        /* (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d_phi_3_t = h_3_z*inv_root_2;
-        const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
-        /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
-            d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
-            d_alpha_1_t*h_3_z));
-        /* (upu-N40) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
-            d_alpha_1_t*h_3_y*root_2);
-        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
-        const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
-            h_3_x*inv_root_2)) - upu_link3_mass;
-        const real Q_t_2 = R(0.5)*Q_t;
-        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
-        const real Q_t_4 = R(0.5)*Q_t_3;
-        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
-            axis_z_upu_axes2_in_base_x*d_G_t;
-        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
-            axis_z_upu_axes2_in_base_y*d_G_t;
-        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
-            axis_z_upu_axes2_in_base_z*d_G_t;
-        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
-        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
-        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
-        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
-        const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
-        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
-            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
-        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
-        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
-        const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
-        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
-            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
-        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
-        const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
-        /* (upu-V14) moment part of reciprocal wrench 1 */
-        const real o_1_x = end_p1_r3_y*w_1_t_4;
-        const real o_1_y = end_p1_r3_x*w_1_t_4;
-        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
-        const real d0_alpha_1_xx = o_1_x*s_2;
-        const real d0_alpha_1_xy = o_1_y*s_2;
-        const real d0_alpha_1_yx = c_2*o_1_x;
-        const real d0_alpha_1_yy = c_2*o_1_y;
-        /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
-        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
-        /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
-           reference point */
-        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
-        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
-        /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
-           and weight */
-        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
-            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
-            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
-            d0_alpha_1_yx*h_3_x));
-        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
-            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
-            d0_alpha_1_xy*h_3_z));
-        /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
-        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
-        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
-            - J_group_2_xz*d0_alpha_1_xx);
-        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
-            - d0_alpha_1_xy*h_3_y*root_2);
-        /* (M2) coupling block of M */
-        const real M_ta_t = Q_t_13*q_in_base_z;
-        const real M_ta_t_2 = Q_t_14*q_in_base_y;
-        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
-        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
-        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
-        const real M_ta_t_6 = Q_t_17*q_in_base_x;
-        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
-        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
-        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
-        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
-        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
-        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
-           without the mass at the connection point */
-        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
-        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
-        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
-            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
-        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
-        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
-        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
-            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
-        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
-        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
-        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
-        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
-        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
-        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
-        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
-        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
-            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
-        /* (M2) coupling block of M */
-        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
-            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
-        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
-        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
-        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
-        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
-        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
-        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
-        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
-        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
-        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
-        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
-            J_group_2_yz*c_2*inv_root_2);
-        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y;
-        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
-        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
-        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
-            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
-        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
-           leg's inertia and weight along all freedoms */
-        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
-        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
-        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
-        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
-        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
-           leg's inertia and weight along all freedoms */
-        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
-        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
-        /* (M3) rotational block of M */
-        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
-            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
-            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
-            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
-        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
-            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
-            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
-        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
-            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
-            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
-        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
-            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
-            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
-            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
-            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
-        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
-            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
-            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
-            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
-        o->sum[0][k] = Q_t_12;  /* total_upu_xx */
-        o->sum[1][k] = Q_t_13;  /* total_upu_xy */
-        o->sum[2][k] = Q_t_14;  /* total_upu_xz */
-        o->sum[3][k] = Q_t_16;  /* total_upu_yy */
-        o->sum[4][k] = Q_t_17;  /* total_upu_yz */
-        o->sum[5][k] = Q_t_19;  /* total_upu_zz */
-        o->sum[6][k] = M_ta_t_12;  /* total_upu_xx_2 */
-        o->sum[7][k] = M_ta_t_13;  /* total_upu_xy_2 */
-        o->sum[8][k] = M_ta_t_14;  /* total_upu_xz_2 */
-        o->sum[9][k] = M_ta_t_15;  /* total_upu_yx */
-        o->sum[10][k] = M_ta_t_16;  /* total_upu_yy_2 */
-        o->sum[11][k] = M_ta_t_17;  /* total_upu_yz_2 */
-        o->sum[12][k] = M_ta_t_18;  /* total_upu_zx */
-        o->sum[13][k] = M_ta_t_19;  /* total_upu_zy */
-        o->sum[14][k] = M_ta_t_20;  /* total_upu_zz_2 */
-        o->sum[15][k] = M_aa_t;  /* total_upu_xx_3 */
-        o->sum[16][k] = M_aa_t_2;  /* total_upu_xy_3 */
-        o->sum[17][k] = M_aa_t_3;  /* total_upu_xz_3 */
-        o->sum[18][k] = M_aa_t_4;  /* total_upu_yy_3 */
-        o->sum[19][k] = M_aa_t_5;  /* total_upu_yz_3 */
-        o->sum[20][k] = M_aa_t_6;  /* total_upu_zz_3 */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void M_place_upu(size_t w, const M_results_upu *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real h_star_in_base_x = s->h_star_in_base_x[k];
-        const real h_star_in_base_y = s->h_star_in_base_y[k];
-        const real h_star_in_base_z = s->h_star_in_base_z[k];
-        const real J_star_t_10 = s->J_star_t_10[k];
-        const real J_star_t_11 = s->J_star_t_11[k];
-        const real J_star_t_12 = s->J_star_t_12[k];
-        const real J_star_t_14 = s->J_star_t_14[k];
-        const real J_star_t_15 = s->J_star_t_15[k];
-        const real J_star_t_17 = s->J_star_t_17[k];
-        const real total_upu_xx = s->sum[0][k];
-        const real total_upu_xy = s->sum[1][k];
-        const real total_upu_xz = s->sum[2][k];
-        const real total_upu_yy = s->sum[3][k];
-        const real total_upu_yz = s->sum[4][k];
-        const real total_upu_zz = s->sum[5][k];
-        const real total_upu_xx_2 = s->sum[6][k];
-        const real total_upu_xy_2 = s->sum[7][k];
-        const real total_upu_xz_2 = s->sum[8][k];
-        const real total_upu_yx = s->sum[9][k];
-        const real total_upu_yy_2 = s->sum[10][k];
-        const real total_upu_yz_2 = s->sum[11][k];
-        const real total_upu_zx = s->sum[12][k];
-        const real total_upu_zy = s->sum[13][k];
-        const real total_upu_zz_2 = s->sum[14][k];
-        const real total_upu_xx_3 = s->sum[15][k];
-        const real total_upu_xy_3 = s->sum[16][k];
-        const real total_upu_xz_3 = s->sum[17][k];
-        const real total_upu_yy_3 = s->sum[18][k];
-        const real total_upu_yz_3 = s->sum[19][k];
-        const real total_upu_zz_3 = s->sum[20][k];
-        const real platform_mass = m->platform_mass;
-        /* (M1) translational block of M */
-        const real M_tt_xx = platform_mass + total_upu_xx;
-        const real M_tt_yy = platform_mass + total_upu_yy;
-        const real M_tt_zz = platform_mass + total_upu_zz;
-        /* (M2) coupling block of M */
-        const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
-        const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
-        const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
-        const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
-        const real M_ta_zx = h_star_in_base_y - total_upu_zx;
-        const real M_ta_zy = total_upu_zy - h_star_in_base_x;
-        /* (M3) rotational block of M */
-        const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
-        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
-        const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
-        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
-        const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
-        const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
-        M[0*w + k] = M_tt_xx;
-        M[1*w + k] = total_upu_xy;
-        M[6*w + k] = total_upu_xy;
-        M[2*w + k] = total_upu_xz;
-        M[12*w + k] = total_upu_xz;
-        M[7*w + k] = M_tt_yy;
-        M[8*w + k] = total_upu_yz;
-        M[13*w + k] = total_upu_yz;
-        M[14*w + k] = M_tt_zz;
-        M[3*w + k] = -total_upu_xx_2;
-        M[18*w + k] = -total_upu_xx_2;
-        M[4*w + k] = M_ta_xy;
-        M[24*w + k] = M_ta_xy;
-        M[5*w + k] = M_ta_xz;
-        M[30*w + k] = M_ta_xz;
-        M[9*w + k] = M_ta_yx;
-        M[19*w + k] = M_ta_yx;
-        M[10*w + k] = total_upu_yy_2;
-        M[25*w + k] = total_upu_yy_2;
-        M[11*w + k] = M_ta_yz;
-        M[31*w + k] = M_ta_yz;
-        M[15*w + k] = M_ta_zx;
-        M[20*w + k] = M_ta_zx;
-        M[16*w + k] = M_ta_zy;
-        M[26*w + k] = M_ta_zy;
-        M[17*w + k] = total_upu_zz_2;
-        M[32*w + k] = total_upu_zz_2;
-        M[21*w + k] = M_aa_xx;
-        M[22*w + k] = M_aa_xy;
-        M[27*w + k] = M_aa_xy;
-        M[23*w + k] = M_aa_xz;
-        M[33*w + k] = M_aa_xz;
-        M[28*w + k] = M_aa_yy;
-        M[29*w + k] = M_aa_yz;
-        M[34*w + k] = M_aa_yz;
-        M[35*w + k] = M_aa_zz;
-    }
-}
-
-INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
-{
-    M_values values, *const s = &values;
-    M_results_upu results_upu;
-    M_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        M_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_place_upu(w, &results_upu, leg, t);
-        }
-        for (size_t n = 0; n < 21; ++n) {
-            s->sum[n][0] = total(results_upu.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            M_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            M_place_upu(w, &results_upu, 0, t);
-            for (size_t n = 0; n < 21; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_upu.sum[n][k] : results_upu.sum[n][k];
-                }
-            }
-        }
-    }
-    M_after(m, w, s, M);
-}
-
-INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
-{
-    real M_of[36*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    M_run(m, w, X, M_of, t);
-    check_output(M_of, 36, w, t);
-    judge(t, w, code);
-    deliver(M_of, 36, w, code, M);
-}
-
-/* ---- Z: 849 mul, 618 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], Z_p_x[LANES],
-        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
-        sum[6][LANES];
-} Z_values;
-typedef struct {
-    real sum[6][8], singular[8];
-} Z_results_upu;
-
-INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real Z_p_t = m->Z_p_t;
-        const real Z_p_t_2 = m->Z_p_t_2;
-        const real Z_p_t_3 = m->Z_p_t_3;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (M4) centripetal force and weight of the platform */
-        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
-        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
-        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
-        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
-        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
-        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
-        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
-        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
-        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
-            g_r0_z_2*h_star_y;
-        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
-            g_r0_x_2*h_star_z;
-        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
-            g_r0_y_2*h_star_x;
-        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
-        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
-        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->Z_p_x[k] = Z_p_x;
-        s->Z_p_y[k] = Z_p_y;
-        s->Z_p_z[k] = Z_p_z;
-        s->Z_q_in_base_x[k] = Z_q_in_base_x;
-        s->Z_q_in_base_y[k] = Z_q_in_base_y;
-        s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
-    states, size_t count, Z_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V17) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y);
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
-            eta_1*n_c1_z);
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t = omega_1_t*omega_1_t;
-        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
-        const real W_2_t_3 = qd_1_t*qd_1_t;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A1) centripetal acceleration of the connection point */
-        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
-            axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
-        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
-        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
-            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
-        const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
-        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1);
-        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
-        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
-        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
-        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
-        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
-        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upu-A26) acceleration tensor of link 2 */
-        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
-        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
-        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
-            axis_x_upu_axes2_z*u_1_z - g_r3_x;
-        const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
-        const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
-        /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
-        const real f_3_o_x = acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y -
-            h_3_x*(W_2_t_2 + W_2_t_3);
-        const real f_3_o_y = acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t +
-            W_2_t_3) - alpha_1_o_t*h_3_y;
-        const real f_3_o_z = B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z -
-            h_3_y*(W_2_t + W_2_t_2);
-        /* (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with
-           link 2, about their reference points */
-        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 +
-            J_group_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z +
-            g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
-        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
-            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
-            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
-            Sigma_2_xx*qdd_1_o_t_2 + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2
-           outwards, the force at the connection point left out */
-        const real N_2_o_y = mu_2_o_y - f_3_o_z*root_2;
-        const real N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2;
-        /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
-        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
-        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z;
-        /* (upu-N59) velocity and gravity terms of the leg force */
-        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
-            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
-        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
-            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
-        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
-            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
-        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
-           the leg's inertia and weight along all freedoms */
-        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
-        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
-        /* (M7) rotational part of Z */
-        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
-            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
-        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
-            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
-        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
-            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
-        o->sum[0][k] = U_in_base_x;  /* total_upu_x */
-        o->sum[1][k] = U_in_base_y;  /* total_upu_y */
-        o->sum[2][k] = U_in_base_z;  /* total_upu_z */
-        o->sum[3][k] = Z_a_t;  /* total_upu_x_2 */
-        o->sum[4][k] = Z_a_t_2;  /* total_upu_y_2 */
-        o->sum[5][k] = Z_a_t_3;  /* total_upu_z_2 */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void Z_place_upu(size_t w, const Z_results_upu *o, size_t first, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Z_after(size_t w, const Z_values *s, real *Z)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real Z_p_x = s->Z_p_x[k];
-        const real Z_p_y = s->Z_p_y[k];
-        const real Z_p_z = s->Z_p_z[k];
-        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
-        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
-        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
-        const real total_upu_x = s->sum[0][k];
-        const real total_upu_y = s->sum[1][k];
-        const real total_upu_z = s->sum[2][k];
-        const real total_upu_x_2 = s->sum[3][k];
-        const real total_upu_y_2 = s->sum[4][k];
-        const real total_upu_z_2 = s->sum[5][k];
-        /* (M5) translational part of Z */
-        const real Z_t_x = Z_p_x + total_upu_x;
-        const real Z_t_y = Z_p_y + total_upu_y;
-        const real Z_t_z = Z_p_z + total_upu_z;
-        /* (M7) rotational part of Z */
-        const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
-        const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
-        const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
-        Z[0*w + k] = Z_t_x;
-        Z[1*w + k] = Z_t_y;
-        Z[2*w + k] = Z_t_z;
-        Z[3*w + k] = Z_a_x;
-        Z[4*w + k] = Z_a_y;
-        Z[5*w + k] = Z_a_z;
-    }
-}
-
-INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
-{
-    Z_values values, *const s = &values;
-    Z_results_upu results_upu;
-    Z_before(m, w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Z_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_place_upu(w, &results_upu, leg, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_upu.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Z_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            Z_place_upu(w, &results_upu, 0, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_upu.sum[n][k] : results_upu.sum[n][k];
-                }
-            }
-        }
-    }
-    Z_after(w, s, Z);
-}
-
-INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
-{
-    real Z_of[6*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    Z_run(m, w, X, V, Z_of, t);
-    check_output(Z_of, 6, w, t);
-    judge(t, w, code);
-    deliver(Z_of, 6, w, code, Z);
-}
-
-/* ---- H: 168 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} H_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} H_results_upu;
-
-INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
-    states, size_t count, H_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + unless(magnitude(root_2) >
-            TOLERANCE*size_);
-    }
-}
-
-INLINE void H_place_upu(size_t w, const H_results_upu *o, size_t leg, size_t first, real *H,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
-{
-    H_values values, *const s = &values;
-    H_results_upu results_upu;
-    H_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        H_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_place_upu(w, &results_upu, leg, leg, H, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            H_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            H_place_upu(w, &results_upu, leg, 0, H, t);
-        }
-    }
-}
-
-INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
-{
-    real H_of[18*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    H_run(m, w, X, H_of, t);
-    check_output(H_of, 18, w, t);
-    judge(t, w, code);
-    deliver(H_of, 18, w, code, H);
-}
-
-/* ---- Hk: 333 mul, 207 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} Hk_values;
-typedef struct {
-    real entry[6][8], singular[8];
-} Hk_results_upu;
-
-INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_values *s, size_t
-    states, size_t count, Hk_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
-        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
-        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c1_t_4*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c1_t_2*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y -
-            end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c1_t_3*q_in_base_x;
-        o->entry[0][k] = -n_c1_t_2;
-        o->entry[1][k] = -n_c1_t_3;
-        o->entry[2][k] = -n_c1_t_4;
-        o->entry[3][k] = Hk_a_1_x;
-        o->entry[4][k] = Hk_a_1_y;
-        o->entry[5][k] = Hk_a_1_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_);
-    }
-}
-
-INLINE void Hk_place_upu(size_t w, const Hk_results_upu *o, size_t leg, size_t first, real *Hk,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        Hk[(leg)*w + k] = o->entry[0][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[1][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[2][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[3][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[4][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[5][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void Hk_run(const prepared *m, size_t w, const real *X, real *Hk, verdict *t)
-{
-    Hk_values values, *const s = &values;
-    Hk_results_upu results_upu;
-    Hk_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        Hk_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Hk_place_upu(w, &results_upu, leg, leg, Hk, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            Hk_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            Hk_place_upu(w, &results_upu, leg, 0, Hk, t);
-        }
-    }
-}
-
-INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk, int *code)
-{
-    real Hk_of[18*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    Hk_run(m, w, X, Hk_of, t);
-    check_output(Hk_of, 18, w, t);
-    judge(t, w, code);
-    deliver(Hk_of, 18, w, code, Hk);
-}
-
-/* ---- constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} constraint_bias_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} constraint_bias_results_upu;
-
-INLINE void constraint_bias_before(size_t w, const real *X, const real *V, constraint_bias_values
-    *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    constraint_bias_values *s, size_t states, size_t count, constraint_bias_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        /* (upu-V17) rate at which the joints turn along moment direction 1 */
-        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y);
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = (S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
-            eta_1*n_c1_z)/w_1_t_3;
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_z = 2*S_dot_tip_x*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
-           the joint accelerations */
-        const real rel_o_z = axis_z_upu_axes2_in_base_x*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
-            axis_z_upu_axes2_in_base_y*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
-            axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z;
-        /* (M11) part of the constraint's second derivative that does not hold the acceleration */
-        const real gamma_c1 = nu_1 - n_c1_z*rel_o_z;
-        o->entry[0][k] = gamma_c1;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void constraint_bias_place_upu(size_t w, const constraint_bias_results_upu *o, size_t leg,
-    size_t first, real *constraint_bias, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        constraint_bias[(leg)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void constraint_bias_run(const prepared *m, size_t w, const real *X, const real *V, real
-    *constraint_bias, verdict *t)
-{
-    constraint_bias_values values, *const s = &values;
-    constraint_bias_results_upu results_upu;
-    constraint_bias_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        constraint_bias_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraint_bias_place_upu(w, &results_upu, leg, leg, constraint_bias, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraint_bias_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            constraint_bias_place_upu(w, &results_upu, leg, 0, constraint_bias, t);
-        }
-    }
-}
-
-INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *bias, int *code)
-{
-    real constraint_bias_of[3*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    constraint_bias_run(m, w, X, V, constraint_bias_of, t);
-    check_output(constraint_bias_of, 3, w, t);
-    judge(t, w, code);
-    deliver(constraint_bias_of, 3, w, code, bias);
-}
-
-/* ---- required: 957 mul, 714 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
-        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
-} required_values;
-typedef struct {
-    real sum[6][8], entry[12][8], singular[8];
-} required_results_upu;
-
-INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
-    *A, required_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
-        const real J_star_xx = m->J_star_xx;
-        const real J_star_xy = m->J_star_xy;
-        const real J_star_xz = m->J_star_xz;
-        const real J_star_yy = m->J_star_yy;
-        const real J_star_yz = m->J_star_yz;
-        const real J_star_zz = m->J_star_zz;
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real platform_mass = m->platform_mass;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real t_ddot_z = A_2;
-        const real alpha_x = A_3;
-        const real alpha_y = A_4;
-        const real alpha_z = A_5;
-        /* (L2) first moment about the platform origin */
-        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
-        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
-        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
-        /* (P1) centripetal tensor of the platform */
-        const real W_p_t = omega_x*omega_x;
-        const real W_p_t_2 = omega_y*omega_y;
-        const real W_p_t_3 = omega_z*omega_z;
-        const real W_p_xy = omega_x*omega_y;
-        const real W_p_xz = omega_x*omega_z;
-        const real W_p_yz = omega_y*omega_z;
-        /* (M6) gyroscopic moment and moment of the weight of the platform */
-        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
-        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
-        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
-        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
-        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
-        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
-        /* (E1) acceleration of the platform origin, less gravity */
-        const real a_t_x = t_ddot_x - gravity_x;
-        const real a_t_y = t_ddot_y - gravity_y;
-        const real a_t_z = t_ddot_z - gravity_z;
-        /* (E2) inertia force of the platform less its weight */
-        const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
-            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
-        const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
-            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
-        const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
-            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
-        /* (E1) acceleration of the platform origin, less gravity */
-        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
-        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
-        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
-        /* (E3) inertia moment of the platform less that of its weight */
-        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
-        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
-        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
-        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
-            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
-        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
-            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
-        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
-            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
-        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
-        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
-        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        s->f_p_x[k] = f_p_x;
-        s->f_p_y[k] = f_p_y;
-        s->f_p_z[k] = f_p_z;
-        s->mu_p_in_base_x[k] = mu_p_in_base_x;
-        s->mu_p_in_base_y[k] = mu_p_in_base_y;
-        s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const required_values
-    *s, size_t states, size_t count, required_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t = qd_1_t*qd_1_t;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (M8) moment of the column's unit force about the platform origin */
-        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
-        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
-        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
-        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
-        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
-        /* (M9) moment of the column's unit force about the platform origin */
-        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z -
-            axis_x_upu_axes2_x*end_p1_r3_y - n_c1_t_4*q_in_base_y;
-        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x -
-            axis_x_upu_axes2_y*end_p1_r3_y - n_c1_t_2*q_in_base_z;
-        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y -
-            axis_x_upu_axes2_z*end_p1_r3_y - n_c1_t_3*q_in_base_x;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c1_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
-            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real etad_1 = nu_1 - etad_1_t;
-        /* (upu-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upu-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t_2 = omega_1_t*omega_1_t;
-        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
-            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A11) acceleration of joint 1 */
-        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
-            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
-        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
-        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z);
-        /* (upu-A17) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1_t_3*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1_t_3;
-        /* (upu-A21) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upu-A25) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upu-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
-        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
-        const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
-        /* (upu-N11) inertia force of link 3 less its weight */
-        const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
-            h_3_x*(W_2_t + W_2_t_3);
-        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
-            alpha_1_t*h_3_y;
-        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
-            W_2_t_3);
-        /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
-            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
-            acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real N_2_y = mu_2_y - f_3_z*root_2;
-        const real N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2;
-        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_t = f_3_y + inv_root_2*mu_2_z;
-        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
-        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z;
-        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
-            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
-        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
-            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
-        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
-            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
-        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_m_x = G_t_3*end_p1_r3_y;
-        const real G_m_y = G_t_3*end_p1_r3_x;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_t = G_m_x*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y -
-            G_m_y*axis_y_upu_axes2_in_base_x - c_in_base_y*q_in_base_z;
-        const real R_a_t_2 = G_m_x*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z -
-            G_m_y*axis_y_upu_axes2_in_base_y - c_in_base_z*q_in_base_x;
-        const real R_a_t_3 = G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x -
-            G_m_y*axis_y_upu_axes2_in_base_z - c_in_base_x*q_in_base_y;
-        o->sum[0][k] = c_in_base_x;  /* total_upu_x */
-        o->sum[1][k] = c_in_base_y;  /* total_upu_y */
-        o->sum[2][k] = c_in_base_z;  /* total_upu_z */
-        o->sum[3][k] = R_a_t;  /* total_upu_x_2 */
-        o->sum[4][k] = R_a_t_2;  /* total_upu_y_2 */
-        o->sum[5][k] = R_a_t_3;  /* total_upu_z_2 */
-        o->entry[0][k] = axis_x_upu_axes2_x;
-        o->entry[1][k] = axis_x_upu_axes2_y;
-        o->entry[2][k] = axis_x_upu_axes2_z;
-        o->entry[3][k] = H_a_3_t;
-        o->entry[4][k] = H_a_3_t_2;
-        o->entry[5][k] = H_a_3_t_3;
-        o->entry[6][k] = -n_c1_t_2;
-        o->entry[7][k] = -n_c1_t_3;
-        o->entry[8][k] = -n_c1_t_4;
-        o->entry[9][k] = Hk_a_1_x;
-        o->entry[10][k] = Hk_a_1_y;
-        o->entry[11][k] = Hk_a_1_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void required_place_upu(size_t w, const required_results_upu *o, size_t leg, size_t first,
-    real *H, real *Hk, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        H[(leg)*w + k] = o->entry[0][first + k];
-        H[(3 + leg)*w + k] = o->entry[1][first + k];
-        H[(6 + leg)*w + k] = o->entry[2][first + k];
-        H[(9 + leg)*w + k] = o->entry[3][first + k];
-        H[(12 + leg)*w + k] = o->entry[4][first + k];
-        H[(15 + leg)*w + k] = o->entry[5][first + k];
-        Hk[(leg)*w + k] = o->entry[6][first + k];
-        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
-        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
-        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
-        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
-        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void required_after(size_t w, const required_values *s, real *required)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real f_p_x = s->f_p_x[k];
-        const real f_p_y = s->f_p_y[k];
-        const real f_p_z = s->f_p_z[k];
-        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
-        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
-        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
-        const real total_upu_x = s->sum[0][k];
-        const real total_upu_y = s->sum[1][k];
-        const real total_upu_z = s->sum[2][k];
-        const real total_upu_x_2 = s->sum[3][k];
-        const real total_upu_y_2 = s->sum[4][k];
-        const real total_upu_z_2 = s->sum[5][k];
-        /* (E4) force that actuators and external wrench must give */
-        const real R_t_x = f_p_x - total_upu_x;
-        const real R_t_y = f_p_y - total_upu_y;
-        const real R_t_z = f_p_z - total_upu_z;
-        /* (E5) moment that actuators and external wrench must give */
-        const real R_a_x = mu_p_in_base_x - total_upu_x_2;
-        const real R_a_y = mu_p_in_base_y - total_upu_y_2;
-        const real R_a_z = mu_p_in_base_z - total_upu_z_2;
-        required[0*w + k] = R_t_x;
-        required[1*w + k] = R_t_y;
-        required[2*w + k] = R_t_z;
-        required[3*w + k] = R_a_x;
-        required[4*w + k] = R_a_y;
-        required[5*w + k] = R_a_z;
-    }
-}
-
-INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *required, real *H, real *Hk, verdict *t)
-{
-    required_values values, *const s = &values;
-    required_results_upu results_upu;
-    required_before(m, w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        required_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_place_upu(w, &results_upu, leg, leg, H, Hk, t);
-        }
-        for (size_t n = 0; n < 6; ++n) {
-            s->sum[n][0] = total(results_upu.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            required_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            required_place_upu(w, &results_upu, leg, 0, H, Hk, t);
-            for (size_t n = 0; n < 6; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_upu.sum[n][k] : results_upu.sum[n][k];
-                }
-            }
-        }
-    }
-    required_after(w, s, required);
-}
-
-/* ---- inverse_kinematics: 81 mul, 60 add, 6 div, 6 sqrt, 6 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} inverse_kinematics_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} inverse_kinematics_results_upu;
-
-INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z - upu_base_point_x;
-        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z - upu_base_point_y;
-        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        /* (upu-K8) displacement of joint 1 */
-        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
-        /* (upu-K17) displacement of joint 2 */
-        const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
-        o->entry[0][k] = q_1;
-        o->entry[1][k] = q_2;
-        o->entry[2][k] = root_2;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
-    }
-}
-
-INLINE void inverse_kinematics_place_upu(size_t w, const inverse_kinematics_results_upu *o, size_t
-    leg, size_t first, real *q, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        q[(3*leg)*w + k] = o->entry[0][first + k];
-        q[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        q[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
-    *t)
-{
-    inverse_kinematics_values values, *const s = &values;
-    inverse_kinematics_results_upu results_upu;
-    inverse_kinematics_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        inverse_kinematics_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_place_upu(w, &results_upu, leg, leg, q, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            inverse_kinematics_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            inverse_kinematics_place_upu(w, &results_upu, leg, 0, q, t);
-        }
-    }
-}
-
-INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
-{
-    real q_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    inverse_kinematics_run(m, w, X, q_of, t);
-    check_output(q_of, 9, w, t);
-    judge(t, w, code);
-    deliver(q_of, 9, w, code, q);
-}
-
-/* ---- joint_rates: 366 mul, 237 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
-} joint_rates_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_rates_results_upu;
-
-INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    joint_rates_values *s, size_t states, size_t count, joint_rates_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        const real qd_1_t_2 = S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c1_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z) - end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z));
-        const real qd_1_t_3 = qd_1_t_2/w_1_t_3;
-        o->entry[0][k] = qd_1_t_3;
-        o->entry[1][k] = qd_1_t;
-        o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void joint_rates_place_upu(size_t w, const joint_rates_results_upu *o, size_t leg, size_t
-    first, real *qd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qd[(3*leg)*w + k] = o->entry[0][first + k];
-        qd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
-    verdict *t)
-{
-    joint_rates_values values, *const s = &values;
-    joint_rates_results_upu results_upu;
-    joint_rates_before(w, X, V, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_rates_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_place_upu(w, &results_upu, leg, leg, qd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_rates_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            joint_rates_place_upu(w, &results_upu, leg, 0, qd, t);
-        }
-    }
-}
-
-INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
-    *rates, int *code)
-{
-    real qd_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    joint_rates_run(m, w, X, V, qd_of, t);
-    check_output(qd_of, 9, w, t);
-    judge(t, w, code);
-    deliver(qd_of, 9, w, code, rates);
-}
-
-/* ---- joint_accelerations: 558 mul, 375 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} joint_accelerations_values;
-typedef struct {
-    real entry[3][8], singular[8];
-} joint_accelerations_results_upu;
-
-INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
-    joint_accelerations_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real t_ddot_z = A_2;
-        const real alpha_x = A_3;
-        const real alpha_y = A_4;
-        const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_upu
-    *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c1_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
-            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real etad_1 = nu_1 - etad_1_t;
-        /* (upu-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upu-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
-        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z + root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t*qd_1_t);
-        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
-            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A11) acceleration of joint 1 */
-        const real qdd_1_t = inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x +
-            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z -
-            bias_t*qd_1_t) + omega_1_t*omega_1_t_2;
-        const real qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z);
-        o->entry[0][k] = qdd_1_t_2;
-        o->entry[1][k] = qdd_1_t;
-        o->entry[2][k] = rel_x;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void joint_accelerations_place_upu(size_t w, const joint_accelerations_results_upu *o,
-    size_t leg, size_t first, real *qdd, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        qdd[(3*leg)*w + k] = o->entry[0][first + k];
-        qdd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
-        qdd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *qdd, verdict *t)
-{
-    joint_accelerations_values values, *const s = &values;
-    joint_accelerations_results_upu results_upu;
-    joint_accelerations_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        joint_accelerations_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_place_upu(w, &results_upu, leg, leg, qdd, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            joint_accelerations_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            joint_accelerations_place_upu(w, &results_upu, leg, 0, qdd, t);
-        }
-    }
-}
-
-INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
-    const real *A, real *accelerations, int *code)
-{
-    real qdd_of[9*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(A, 6, w, t);
-    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
-    check_output(qdd_of, 9, w, t);
-    judge(t, w, code);
-    deliver(qdd_of, 9, w, code, accelerations);
-}
-
-/* ---- constraints: 234 mul, 153 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
-} constraints_values;
-typedef struct {
-    real entry[1][8], singular[8];
-} constraints_results_upu;
-
-INLINE void constraints_before(size_t w, const real *X, constraints_values *s, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, const
-    constraints_values *s, size_t states, size_t count, constraints_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z - upu_base_point_x;
-        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z - upu_base_point_y;
-        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (M10) distance by which the leg misses the connection point, along a direction left out */
-        const real phi_c1_t = root_2*(py_1*s_1 - c_1*px_1)*(-c_2*(end_p1_r0_z*s_2 -
-            c_2*end_p1_r1_y) - s_2*(-c_2*end_p1_r0_z - end_p1_r1_y*s_2))/volume_c_t;
-        const real phi_c1 = c_1*end_p1_r0_x - phi_c1_t - end_p1_r0_y*s_1;
-        o->entry[0][k] = phi_c1;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t);
-    }
-}
-
-INLINE void constraints_place_upu(size_t w, const constraints_results_upu *o, size_t leg, size_t
-    first, real *constraints, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        constraints[(leg)*w + k] = o->entry[0][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void constraints_run(const prepared *m, size_t w, const real *X, real *constraints, verdict
-    *t)
-{
-    constraints_values values, *const s = &values;
-    constraints_results_upu results_upu;
-    constraints_before(w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        constraints_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraints_place_upu(w, &results_upu, leg, leg, constraints, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            constraints_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            constraints_place_upu(w, &results_upu, leg, 0, constraints, t);
-        }
-    }
-}
-
-INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *residual, int *code)
-{
-    real constraints_of[3*LANES];
-    verdict values, *const t = &values;
-    start(w, t);
-    check_input(X, 7, w, t);
-    constraints_run(m, w, X, constraints_of, t);
-    check_output(constraints_of, 3, w, t);
-    judge(t, w, code);
-    deliver(constraints_of, 3, w, code, residual);
-}
-
-/* ---- legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
-        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
-        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
-        alpha_z[LANES];
-} legs_values;
-typedef struct {
-    real entry[15][8], singular[8];
-} legs_results_upu;
-
-INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real V_0 = V[6*k + 0];
-        const real V_1 = V[6*k + 1];
-        const real V_2 = V[6*k + 2];
-        const real V_3 = V[6*k + 3];
-        const real V_4 = V[6*k + 4];
-        const real V_5 = V[6*k + 5];
-        const real A_0 = A[6*k + 0];
-        const real A_1 = A[6*k + 1];
-        const real A_2 = A[6*k + 2];
-        const real A_3 = A[6*k + 3];
-        const real A_4 = A[6*k + 4];
-        const real A_5 = A[6*k + 5];
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* V: named entries */
-        const real t_dot_x = V_0;
-        const real t_dot_y = V_1;
-        const real t_dot_z = V_2;
-        const real omega_x = V_3;
-        const real omega_y = V_4;
-        const real omega_z = V_5;
-        /* A: named entries */
-        const real t_ddot_x = A_0;
-        const real t_ddot_y = A_1;
-        const real t_ddot_z = A_2;
-        const real alpha_x = A_3;
-        const real alpha_y = A_4;
-        const real alpha_z = A_5;
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->t_dot_x[k] = t_dot_x;
-        s->t_dot_y[k] = t_dot_y;
-        s->t_dot_z[k] = t_dot_z;
-        s->omega_x[k] = omega_x;
-        s->omega_y[k] = omega_y;
-        s->omega_z[k] = omega_z;
-        s->t_ddot_x[k] = t_ddot_x;
-        s->t_ddot_y[k] = t_ddot_y;
-        s->t_ddot_z[k] = t_ddot_z;
-        s->alpha_x[k] = alpha_x;
-        s->alpha_y[k] = alpha_y;
-        s->alpha_z[k] = alpha_z;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
-    states, size_t count, legs_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real t_dot_x = s->t_dot_x[j];
-        const real t_dot_y = s->t_dot_y[j];
-        const real t_dot_z = s->t_dot_z[j];
-        const real omega_x = s->omega_x[j];
-        const real omega_y = s->omega_y[j];
-        const real omega_z = s->omega_z[j];
-        const real t_ddot_x = s->t_ddot_x[j];
-        const real t_ddot_y = s->t_ddot_y[j];
-        const real t_ddot_z = s->t_ddot_z[j];
-        const real alpha_x = s->alpha_x[j];
-        const real alpha_y = s->alpha_y[j];
-        const real alpha_z = s->alpha_z[j];
-        const real J_group_2_xy = m->J_group_2_xy[i];
-        const real J_group_2_xz = m->J_group_2_xz[i];
-        const real J_group_2_yz = m->J_group_2_yz[i];
-        const real Sigma_2_xx = m->Sigma_2_xx[i];
-        const real Sigma_2_yy = m->Sigma_2_yy[i];
-        const real Sigma_2_zz = m->Sigma_2_zz[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real n_c1_t = m->n_c1_t[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
-        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
-        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z;
-        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z;
-        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z;
-        const real S_x = q_in_base_x + t_x - upu_base_point_x;
-        const real S_y = q_in_base_y + t_y - upu_base_point_y;
-        const real S_z = q_in_base_z + t_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
-            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
-            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
-            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
-        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
-            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
-            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
-            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
-        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
-            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
-            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
-            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
-            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
-        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
-        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
-        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = root_1*root_2;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_z = n_m1_r0_y*root_2/volume_c_t;
-        /* (upu-V8) force part of reciprocal wrench 1 */
-        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
-        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
-        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
-        const real w_1_t = s_1*s_2;
-        const real w_1_t_2 = c_1*s_2;
-        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
-            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
-        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
-            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
-        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
-            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
-        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
-        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
-        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
-        const real w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y;
-        const real inv_w_1_t_25 = 1/w_1_t_3;
-        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
-        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
-            axis_x_upu_axes2_x*end_p1_r3_y;
-        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
-            axis_x_upu_axes2_y*end_p1_r3_y;
-        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
-            axis_x_upu_axes2_z*end_p1_r3_y;
-        /* (upu-V1) velocity of the connection point */
-        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
-        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
-        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
-        const real S_dot_x = S_dot_t + t_dot_x;
-        const real S_dot_y = S_dot_t_2 + t_dot_y;
-        const real S_dot_z = S_dot_t_3 + t_dot_z;
-        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
-            S_dot_z*axis_x_upu_axes2_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
-            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
-        /* (upu-A8) rate of moment direction 1 */
-        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
-            axis_x_upu_axes2_z*omega_z;
-        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
-            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
-        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
-            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t = qd_1_t*qd_1_t;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t = 2*S_dot_tip_x;
-        const real bias_t_2 = bias_t*qd_1_t;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
-        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
-        /* (upu-V7) force of unit wrench 1 that the leg's freedoms leave out */
-        const real n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z;
-        const real n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z;
-        const real n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z;
-        /* (upu-V18) rate of joint 1 */
-        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
-            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
-            n_c1_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
-        /* (upu-V21) angular velocity of link 1 */
-        const real omega_1_t = qd_1_t_2*s_2;
-        const real omega_1_t_2 = c_2*qd_1_t_2;
-        /* (upu-A8) rate of moment direction 1 */
-        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
-            end_p1_r3_x*omega_tip_z;
-        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
-            end_p1_r3_y*omega_tip_z;
-        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
-        const real zeta_2_x = omega_1_t_2*qd_1_t;
-        const real zeta_2_y = omega_1_t*qd_1_t;
-        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
-        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
-        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
-            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
-            omega_tip_y);
-        const real nu_1 = -nu_1_t - nu_1_t_2;
-        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
-        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
-            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
-            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
-        const real etad_1 = nu_1 - etad_1_t;
-        /* (upu-A2) acceleration of the connection point without its centripetal part */
-        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
-        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
-        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
-        /* (upu-A3) acceleration of the connection point */
-        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
-        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
-        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
-        /* (upu-V23) centripetal tensor of link 2 */
-        const real W_2_t_2 = omega_1_t*omega_1_t;
-        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
-        const real W_2_xy = omega_1_t*omega_1_t_2;
-        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
-        const real bias_t_3 = bias_t*omega_1_t_2;
-        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
-        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
-        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
-            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
-        /* (upu-A11) acceleration of joint 1 */
-        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
-            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
-        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
-        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z);
-        /* (upu-A17) angular acceleration of link 1 */
-        const real alpha_1_t = qdd_1_t_3*s_2;
-        const real alpha_1_t_2 = c_2*qdd_1_t_3;
-        /* (upu-A21) angular acceleration of link 2 */
-        const real alpha_2_x = alpha_1_t - zeta_2_x;
-        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
-        /* (upu-A25) acceleration tensor of link 2 */
-        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
-        const real B_2_zx = zeta_2_y - alpha_2_y;
-        const real B_2_zy = alpha_2_x - zeta_2_x;
-        /* (upu-N3) acceleration of the reference point of link 3, less gravity */
-        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
-            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
-        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
-        const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
-        /* (upu-N11) inertia force of link 3 less its weight */
-        const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
-            h_3_x*(W_2_t + W_2_t_3);
-        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
-            alpha_1_t*h_3_y;
-        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
-            W_2_t_3);
-        /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
-        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
-            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
-            acc_3_y*h_3_y - acc_3_z*h_3_z;
-        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
-            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
-            acc_3_z*h_3_x - g_r3_x*h_2_y;
-        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
-            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
-            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
-        /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
-           left out */
-        const real N_2_y = mu_2_y - f_3_z*root_2;
-        const real N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2;
-        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_t = f_3_y + inv_root_2*mu_2_z;
-        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
-        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z;
-        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
-           point */
-        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
-            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
-        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
-            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
-        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
-            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
-        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
-           freedoms */
-        const real G_m_x = G_t_3*end_p1_r3_y;
-        const real G_m_y = G_t_3*end_p1_r3_x;
-        /* (upu-N55) moment of the leg on the platform without actuation */
-        const real c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x;
-        const real c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y;
-        const real c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z;
-        o->entry[0][k] = c_in_base_x;
-        o->entry[1][k] = c_in_base_y;
-        o->entry[2][k] = c_in_base_z;
-        o->entry[3][k] = c_m_in_base_x;
-        o->entry[4][k] = c_m_in_base_y;
-        o->entry[5][k] = c_m_in_base_z;
-        o->entry[6][k] = axis_x_upu_axes2_x;
-        o->entry[7][k] = axis_x_upu_axes2_y;
-        o->entry[8][k] = axis_x_upu_axes2_z;
-        o->entry[9][k] = -n_c1_t_2;
-        o->entry[10][k] = -n_c1_t_3;
-        o->entry[11][k] = -n_c1_t_4;
-        o->entry[12][k] = n_m1_in_base_x;
-        o->entry[13][k] = n_m1_in_base_y;
-        o->entry[14][k] = n_m1_in_base_z;
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(-volume_c_t) > TOLERANCE*n_c1_t) + unless(magnitude(root_2) >
-            TOLERANCE*size_) + unless(magnitude(w_1_t_3) > TOLERANCE*size_);
-    }
-}
-
-INLINE void legs_place_upu(size_t w, const legs_results_upu *o, size_t leg, size_t first, real
-    *leg_force, real *drive, real *constraint_direction, verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        leg_force[(6*leg)*w + k] = o->entry[0][first + k];
-        leg_force[(1 + 6*leg)*w + k] = o->entry[1][first + k];
-        leg_force[(2 + 6*leg)*w + k] = o->entry[2][first + k];
-        leg_force[(3 + 6*leg)*w + k] = o->entry[3][first + k];
-        leg_force[(4 + 6*leg)*w + k] = o->entry[4][first + k];
-        leg_force[(5 + 6*leg)*w + k] = o->entry[5][first + k];
-        drive[(6*leg)*w + k] = o->entry[6][first + k];
-        drive[(1 + 6*leg)*w + k] = o->entry[7][first + k];
-        drive[(2 + 6*leg)*w + k] = o->entry[8][first + k];
-        constraint_direction[(6*leg)*w + k] = o->entry[9][first + k];
-        constraint_direction[(1 + 6*leg)*w + k] = o->entry[10][first + k];
-        constraint_direction[(2 + 6*leg)*w + k] = o->entry[11][first + k];
-        constraint_direction[(3 + 6*leg)*w + k] = o->entry[12][first + k];
-        constraint_direction[(4 + 6*leg)*w + k] = o->entry[13][first + k];
-        constraint_direction[(5 + 6*leg)*w + k] = o->entry[14][first + k];
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
-    real *leg_force, real *drive, real *constraint_direction, verdict *t)
-{
-    legs_values values, *const s = &values;
-    legs_results_upu results_upu;
-    clear(drive, 18*w);
-    legs_before(w, X, V, A, s, t);
-    if (w == 1) {  /* the legs side by side */
-        legs_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_place_upu(w, &results_upu, leg, leg, leg_force, drive, constraint_direction, t);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            legs_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            legs_place_upu(w, &results_upu, leg, 0, leg_force, drive, constraint_direction, t);
-        }
-    }
-}
-
-/* ---- potential: 171 mul, 135 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
-typedef struct {
-    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
-        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t[LANES],
-        sum[1][LANES];
-} potential_values;
-typedef struct {
-    real sum[1][8], singular[8];
-} potential_results_upu;
-
-INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
-    verdict *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real X_0 = X[7*k + 0];
-        const real X_1 = X[7*k + 1];
-        const real X_2 = X[7*k + 2];
-        const real X_3 = X[7*k + 3];
-        const real X_4 = X[7*k + 4];
-        const real X_5 = X[7*k + 5];
-        const real X_6 = X[7*k + 6];
-        const real gravity_x = m->gravity_x;
-        const real gravity_y = m->gravity_y;
-        const real gravity_z = m->gravity_z;
-        const real h_star_x = m->h_star_x;
-        const real h_star_y = m->h_star_y;
-        const real h_star_z = m->h_star_z;
-        const real platform_mass = m->platform_mass;
-        /* X: named entries */
-        const real t_x = X_0;
-        const real t_y = X_1;
-        const real t_z = X_2;
-        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
-        const real quaternion_scale = 2/quaternion_norm2;
-        const real quaternion_sx = X_3*quaternion_scale;
-        const real quaternion_sy = X_4*quaternion_scale;
-        const real quaternion_sz = X_5*quaternion_scale;
-        const real quaternion_wx = X_6*quaternion_sx;
-        const real quaternion_wy = X_6*quaternion_sy;
-        const real quaternion_wz = X_6*quaternion_sz;
-        const real quaternion_xx = X_3*quaternion_sx;
-        const real quaternion_xy = X_3*quaternion_sy;
-        const real quaternion_xz = X_3*quaternion_sz;
-        const real quaternion_yy = X_4*quaternion_sy;
-        const real quaternion_yz = X_4*quaternion_sz;
-        const real quaternion_zz = X_5*quaternion_sz;
-        const real R_xx = 1 - quaternion_yy - quaternion_zz;
-        const real R_xy = quaternion_xy - quaternion_wz;
-        const real R_xz = quaternion_wy + quaternion_xz;
-        const real R_yx = quaternion_wz + quaternion_xy;
-        const real R_yy = 1 - quaternion_xx - quaternion_zz;
-        const real R_yz = quaternion_yz - quaternion_wx;
-        const real R_zx = quaternion_xz - quaternion_wy;
-        const real R_zy = quaternion_wx + quaternion_yz;
-        const real R_zz = 1 - quaternion_xx - quaternion_yy;
-        /* (V1) potential energy */
-        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
-            platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
-            platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
-            platform_mass*t_z);
-        s->t_x[k] = t_x;
-        s->t_y[k] = t_y;
-        s->t_z[k] = t_z;
-        s->R_xx[k] = R_xx;
-        s->R_xy[k] = R_xy;
-        s->R_xz[k] = R_xz;
-        s->R_yx[k] = R_yx;
-        s->R_yy[k] = R_yy;
-        s->R_yz[k] = R_yz;
-        s->R_zx[k] = R_zx;
-        s->R_zy[k] = R_zy;
-        s->R_zz[k] = R_zz;
-        s->potential_t[k] = potential_t;
-        t->invalid[k] += unless(quaternion_norm2 > 0);
-    }
-}
-
-INLINE void potential_legs_upu(const prepared *m, size_t leg, size_t legs, const potential_values
-    *s, size_t states, size_t count, potential_results_upu *o)
-{
-    for (size_t k = 0; k < count; ++k) {
-        const size_t i = leg + legs*k;
-        const size_t j = states*k;
-        const real t_x = s->t_x[j];
-        const real t_y = s->t_y[j];
-        const real t_z = s->t_z[j];
-        const real R_xx = s->R_xx[j];
-        const real R_xy = s->R_xy[j];
-        const real R_xz = s->R_xz[j];
-        const real R_yx = s->R_yx[j];
-        const real R_yy = s->R_yy[j];
-        const real R_yz = s->R_yz[j];
-        const real R_zx = s->R_zx[j];
-        const real R_zy = s->R_zy[j];
-        const real R_zz = s->R_zz[j];
-        const real b_r0_x = m->b_r0_x[i];
-        const real b_r0_y = m->b_r0_y[i];
-        const real b_r0_z = m->b_r0_z[i];
-        const real branch_1 = m->branch_1[i];
-        const real branch_2 = m->branch_2[i];
-        const real g_r0_x = m->g_r0_x[i];
-        const real g_r0_y = m->g_r0_y[i];
-        const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
-        const real h_2_z = m->h_2_z[i];
-        const real h_3_x = m->h_3_x[i];
-        const real h_3_y = m->h_3_y[i];
-        const real h_3_z = m->h_3_z[i];
-        const real size_t_3 = m->size_t_3[i];
-        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
-        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
-        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
-        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
-        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
-        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
-        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
-        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
-        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
-        const real upu_base_point_x = m->upu_base_point_x[i];
-        const real upu_base_point_y = m->upu_base_point_y[i];
-        const real upu_base_point_z = m->upu_base_point_z[i];
-        const real upu_link2_mass = m->upu_link2_mass[i];
-        const real upu_link3_mass = m->upu_link3_mass[i];
-        const real upu_platform_point_x = m->upu_platform_point_x[i];
-        const real upu_platform_point_y = m->upu_platform_point_y[i];
-        const real upu_platform_point_z = m->upu_platform_point_z[i];
-        /* (upu-K1) from the base point to the connection point */
-        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
-            R_xz*upu_platform_point_z - upu_base_point_x;
-        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
-            R_yz*upu_platform_point_z - upu_base_point_y;
-        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
-            R_zz*upu_platform_point_z - upu_base_point_z;
-        /* (upu-K2) component along the reference direction */
-        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
-        /* (upu-K3) component across the reference direction */
-        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
-        /* (upu-K4) squared amplitude */
-        const real rho2_1 = px_1*px_1 + py_1*py_1;
-        /* (upu-K5) amplitude, with the sign of the branch */
-        const real root_1 = branch_1*root(rho2_1);
-        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
-        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
-        /* (upu-K13) squared amplitude */
-        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
-        /* (upu-K14) amplitude, with the sign of the branch */
-        const real root_2 = branch_2*root(rho2_2);
-        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
-        const real inv_root_2 = 1/root_2;
-        const real c_2 = inv_root_2*root_1;
-        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
-        const real s_2 = inv_root_2*xi_1_t;
-        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
-        const real inv_root_1 = 1/root_1;
-        const real c_1 = inv_root_1*py_1;
-        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
-        const real s_1 = inv_root_1*px_1;
-        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
-           less gravity */
-        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
-        /* (V1) potential energy */
-        const real b_r1_x = b_r0_y*s_1 - b_r0_x*c_1;
-        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
-        const real b_r3_x = b_r0_z*s_2 - b_r1_y*c_2;
-        const real b_r3_y = -b_r0_z*c_2 - b_r1_y*s_2;
-        const real potential_t_2 = (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y +
-            b_r1_x*upu_link2_mass + b_r1_x*upu_link3_mass) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x +
-            h_3_x + b_r3_x*upu_link2_mass + upu_link3_mass*(b_r3_x + root_2)) - (-c_2*g_r0_z -
-            g_r1_y*s_2)*(h_2_z + h_3_z - b_r3_y*upu_link2_mass - b_r3_y*upu_link3_mass);
-        o->sum[0][k] = potential_t_2;  /* total_upu */
-        o->singular[k] = unless(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            unless(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
-    }
-}
-
-INLINE void potential_place_upu(size_t w, const potential_results_upu *o, size_t first, verdict
-    *t)
-{
-    for (size_t k = 0; k < w; ++k) {
-        t->singular[k] += o->singular[first + k];
-    }
-}
-
-INLINE void potential_after(size_t w, const potential_values *s, real *potential)
-{
-    for (size_t k = 0; k < w; ++k) {
-        const real potential_t = s->potential_t[k];
-        const real total_upu = s->sum[0][k];
-        /* (V1) potential energy */
-        const real potential_ = -potential_t - total_upu;
-        potential[0*w + k] = potential_;
-    }
-}
-
-INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
-{
-    potential_values values, *const s = &values;
-    potential_results_upu results_upu;
-    potential_before(m, w, X, s, t);
-    if (w == 1) {  /* the legs side by side */
-        potential_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_place_upu(w, &results_upu, leg, t);
-        }
-        for (size_t n = 0; n < 1; ++n) {
-            s->sum[n][0] = total(results_upu.sum[n], 3);
-        }
-    } else {  /* the states side by side */
-        for (size_t leg = 0; leg < 3; ++leg) {
-            potential_legs_upu(m, leg, 0, s, 1, w, &results_upu);
-            potential_place_upu(w, &results_upu, 0, t);
-            for (size_t n = 0; n < 1; ++n) {
-                for (size_t k = 0; k < w; ++k) {
-                    s->sum[n][k] = leg ? s->sum[n][k] + results_upu.sum[n][k] : results_upu.sum[n][k];
-                }
-            }
-        }
-    }
-    potential_after(w, s, potential);
-}
-
 /* ---- linear equations ---- */
 
-/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
-   finite; a is overwritten.  Rows are scaled, the largest pivot of each column is taken. */
-INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
+/* Rows change places only for a pivot that is larger by this factor: less often, and with
+   rounding errors as small as with the largest pivots. */
+#define CLEARLY 2
+
+/* other -= factor*row */
+INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
 {
-    for (size_t i = 0; i < n; ++i) {
-        real size = 0;
-        for (size_t j = 0; j < n; ++j) {
-            size = magnitude(a[i*stride + j]) > size ? magnitude(a[i*stride + j]) : size;
-        }
-        const real scale = 1/size;
-        for (size_t j = 0; j < stride; ++j) {
-            a[i*stride + j] *= scale;
-        }
+    for (size_t j = 0; j < n; ++j) {
+        other[j] -= factor*row[j];
     }
-    for (size_t p = 0; p < n; ++p) {
-        size_t best = p;
-        for (size_t i = p + 1; i < n; ++i) {
-            best = magnitude(a[i*stride + p]) > magnitude(a[best*stride + p]) ? i : best;
+}
+
+/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
+{
+    real most = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        most = larger(most, magnitude(a[i*stride + p]));
+    }
+    if (most > CLEARLY*magnitude(a[p*stride + p])) {
+        size_t best = p + 1;
+        while (magnitude(a[best*stride + p]) < most) {
+            ++best;
         }
         for (size_t j = 0; j < stride; ++j) {
             const real moved = a[best*stride + j];
             a[best*stride + j] = a[p*stride + j];
             a[p*stride + j] = moved;
         }
-        *singular += unless(magnitude(a[p*stride + p]) > PIVOT);
-        x[p] = 1/a[p*stride + p];
+    }
+}
+
+/* Solve a x = b: row i is a[i*stride ...], b stands in column n, columns beyond are anything
+   finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
+INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
+{
+    for (size_t i = 0; i < n; ++i) {
+        real *const row = a + i*stride;
+        real size = 0;
+        for (size_t j = 0; j < n; ++j) {
+            size = larger(size, magnitude(row[j]));
+        }
+        const real scale = 1/size;
+        for (size_t j = 0; j < stride; ++j) {
+            row[j] *= scale;
+        }
+    }
+    for (size_t p = 0; p < n; ++p) {
+        const real *const pivot = a + p*stride;
+        choose_one(n, stride, p, a);
+        *singular += UNLESS(magnitude(pivot[p]) > PIVOT);
+        x[p] = 1/pivot[p];
         for (size_t i = p + 1; i < n; ++i) {
-            const real factor = a[i*stride + p]*x[p];
-            for (size_t j = 0; j < stride; ++j) {
-                a[i*stride + j] -= factor*a[p*stride + j];
-            }
+            subtract(stride, a[i*stride + p]*x[p], pivot, a + i*stride);
         }
     }
     for (size_t p = n; p-- > 0;) {
@@ -5599,24 +604,44 @@ INLINE void solve_one(size_t n, size_t stride, real *a, real *x, real *singular)
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is the larger. */
-INLINE void choose_lanes(size_t n, size_t p, real *pivot, real *other)
+/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
+   with 0 and 1 are exact, and unlike branches they run in lanes. */
+APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
 {
-    real larger[LANES];
+    real swap[LANES], keep[LANES];
     for (size_t k = 0; k < LANES; ++k) {
-        larger[k] = magnitude(other[p*LANES + k]) > magnitude(pivot[p*LANES + k]) ? 1 : 0;
+        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
+        keep[k] = 1 - swap[k];
     }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = larger[k] > 0 ? up : down;
-            other[j*LANES + k] = larger[k] > 0 ? down : up;
+            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
+            other[j*LANES + k] = swap[k]*down + keep[k]*up;
         }
     }
 }
 
-/* The same for LANES systems side by side, without padding: a row takes its place as pivot of
-   those states in which its entry is the larger. */
+/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+INLINE void choose_lanes(size_t n, size_t p, real *a)
+{
+    const size_t row = (n + 1)*LANES;
+    real most[LANES] = {0};
+    int any = 0;
+    for (size_t i = p + 1; i < n; ++i) {
+        for (size_t k = 0; k < LANES; ++k) {
+            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+        }
+    }
+    for (size_t k = 0; k < LANES; ++k) {
+        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+    }
+    for (size_t i = p + 1; i < n && any; ++i) {
+        swap_lanes(n, p, a + p*row, a + i*row);
+    }
+}
+
+/* The same for LANES systems side by side, without padding. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
@@ -5624,8 +649,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
             for (size_t k = 0; k < LANES; ++k) {
-                const real entry = magnitude(a[i*row + j*LANES + k]);
-                size[k] = entry > size[k] ? entry : size[k];
+                size[k] = larger(size[k], magnitude(a[i*row + j*LANES + k]));
             }
         }
         for (size_t k = 0; k < LANES; ++k) {
@@ -5638,12 +662,10 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         }
     }
     for (size_t p = 0; p < n; ++p) {
-        real *const pivot = a + p*row;
-        for (size_t i = p + 1; i < n; ++i) {
-            choose_lanes(n, p, pivot, a + i*row);
-        }
+        const real *const pivot = a + p*row;
+        choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += unless(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -5681,12 +703,12 @@ INLINE void solve(size_t n, size_t stride, size_t w, real *a, real *x, real *sin
     }
 }
 
-/* Add the wrench, given state by state, to a generalised force; extra coordinates get none. */
+/* Add the wrench to a generalised force; extra coordinates get none. */
 INLINE void add_wrench(const real *wrench, real sign, size_t w, real *force)
 {
     for (size_t k = 0; k < w; ++k) {
         for (size_t e = 0; e < 6; ++e) {
-            force[e*w + k] += sign*wrench[6*k + e];
+            force[e*w + k] += sign*wrench[e*w + k];
         }
     }
 }
@@ -5844,6 +866,5042 @@ static void moved(const real *X, const real *step, real part, real *to)
     }
 }
 
+/* ---- functions of the state: M, Z, H and the like ---- */
+
+/* ---- dynamics: 1647 mul, 1185 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
+        h_star_in_base_x[LANES], h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES],
+        J_star_t_11[LANES], J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES],
+        J_star_t_17[LANES], Z_p_x[LANES], Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES],
+        Z_q_in_base_y[LANES], Z_q_in_base_z[LANES], sum[27][LANES];
+} dynamics_values;
+typedef struct {
+    real sum[27][8], entry[13][8], singular[8];
+} dynamics_results_upu;
+
+INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const real *V,
+    dynamics_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real J_star_t_6 = m->J_star_t_6;
+        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_zz = m->J_star_zz;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
+        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
+        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        /* (L3) inertia tensor about the platform origin */
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
+        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+            J_star_t_5*R_xz;
+        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+            J_star_t_7*R_xz;
+        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+            J_star_t_7*R_yz;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        /* (M4) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z_2*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x_2*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y_2*h_star_x;
+        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
+        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
+        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        s->h_star_in_base_x[k] = h_star_in_base_x;
+        s->h_star_in_base_y[k] = h_star_in_base_y;
+        s->h_star_in_base_z[k] = h_star_in_base_z;
+        s->J_star_t_10[k] = J_star_t_10;
+        s->J_star_t_11[k] = J_star_t_11;
+        s->J_star_t_12[k] = J_star_t_12;
+        s->J_star_t_14[k] = J_star_t_14;
+        s->J_star_t_15[k] = J_star_t_15;
+        s->J_star_t_17[k] = J_star_t_17;
+        s->Z_p_x[k] = Z_p_x;
+        s->Z_p_y[k] = Z_p_y;
+        s->Z_p_z[k] = Z_p_z;
+        s->Z_q_in_base_x[k] = Z_q_in_base_x;
+        s->Z_q_in_base_y[k] = Z_q_in_base_y;
+        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const dynamics_values
+    *s, size_t states, size_t count, int add, dynamics_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real J_group_2_xx = m->J_group_2_xx[i];
+        const real J_group_2_xy = m->J_group_2_xy[i];
+        const real J_group_2_xz = m->J_group_2_xz[i];
+        const real J_group_2_yy = m->J_group_2_yy[i];
+        const real J_group_2_yz = m->J_group_2_yz[i];
+        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real Sigma_2_xx = m->Sigma_2_xx[i];
+        const real Sigma_2_yy = m->Sigma_2_yy[i];
+        const real Sigma_2_zz = m->Sigma_2_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real g_r0_z = m->g_r0_z[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_2_z = m->h_2_z[i];
+        const real h_3_x = m->h_3_x[i];
+        const real h_3_y = m->h_3_y[i];
+        const real h_3_z = m->h_3_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
+        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real d_alpha_1_t = inv_w_1_t_25*s_2;
+        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
+        /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real d_acc_3_t = d_alpha_1_t_2*root_2;
+        /* (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its
+           reference point */
+        const real d_phi_3_t = h_3_z*inv_root_2;
+        const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
+        /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
+            d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
+            d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
+            d_alpha_1_t*h_3_z));
+        /* (upu-N40) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
+            d_alpha_1_t*h_3_y*root_2);
+        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
+            h_3_x*inv_root_2)) - upu_link3_mass;
+        const real Q_t_2 = R(0.5)*Q_t;
+        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
+        const real Q_t_4 = R(0.5)*Q_t_3;
+        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
+            axis_z_upu_axes2_in_base_x*d_G_t;
+        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
+            axis_z_upu_axes2_in_base_y*d_G_t;
+        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
+            axis_z_upu_axes2_in_base_z*d_G_t;
+        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
+        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
+        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
+        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
+        const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
+        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
+            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
+        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
+        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
+        const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
+        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
+        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
+        const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
+        /* (upu-V15) moment part of reciprocal wrench 1 */
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
+        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real d0_alpha_1_xx = o_1_x*s_2;
+        const real d0_alpha_1_xy = o_1_y*s_2;
+        const real d0_alpha_1_yx = c_2*o_1_x;
+        const real d0_alpha_1_yy = c_2*o_1_y;
+        /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
+        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
+        /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
+           reference point */
+        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
+        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
+        /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
+            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
+            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
+            d0_alpha_1_yx*h_3_x));
+        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
+            d0_alpha_1_xy*h_3_z));
+        /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
+        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
+        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
+            - J_group_2_xz*d0_alpha_1_xx);
+        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
+            - d0_alpha_1_xy*h_3_y*root_2);
+        /* (M2) coupling block of M */
+        const real M_ta_t = Q_t_13*q_in_base_z;
+        const real M_ta_t_2 = Q_t_14*q_in_base_y;
+        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
+        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
+        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
+        const real M_ta_t_6 = Q_t_17*q_in_base_x;
+        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
+        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
+        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
+        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
+        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
+        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
+        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
+        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
+        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
+        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
+        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
+        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
+        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
+        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
+        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
+        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
+        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
+        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
+        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
+        /* (M2) coupling block of M */
+        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
+        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
+        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
+        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
+        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
+        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
+        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
+        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
+        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
+        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
+        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
+            J_group_2_yz*c_2*inv_root_2);
+        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y;
+        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y;
+        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
+        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
+        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
+        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
+        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
+        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
+        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
+        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
+        /* (M3) rotational block of M */
+        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
+            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
+            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
+        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
+            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
+            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
+        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
+            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
+            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
+        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
+            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
+            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
+        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
+            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
+            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
+        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
+            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
+            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
+            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upu-V18) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y +
+            n_m1_in_base_z*omega_z;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
+            eta_1*n_c_z);
+        /* (upu-V22) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-V24) centripetal tensor of link 2 */
+        const real W_2_t = omega_1_t*omega_1_t;
+        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
+        const real W_2_t_3 = qd_1_t*qd_1_t;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
+        const real bias_t_2 = bias_t*qd_1_t;
+        const real bias_t_3 = bias_t*omega_1_t_2;
+        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
+        /* (upu-A1) centripetal acceleration of the connection point */
+        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
+        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
+        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
+            axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
+        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
+            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
+        const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
+        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1);
+        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
+        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
+        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
+        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
+        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
+        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
+        /* (upu-A26) acceleration tensor of link 2 */
+        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
+        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
+        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
+        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
+        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
+        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
+        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
+        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
+            axis_x_upu_axes2_z*u_1_z - g_r3_x;
+        const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
+        const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
+        /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
+        const real f_3_o_x = acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y -
+            h_3_x*(W_2_t_2 + W_2_t_3);
+        const real f_3_o_y = acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t +
+            W_2_t_3) - alpha_1_o_t*h_3_y;
+        const real f_3_o_z = B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z -
+            h_3_y*(W_2_t + W_2_t_2);
+        /* (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 +
+            J_group_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z +
+            g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
+        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
+            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
+            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
+        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
+            Sigma_2_xx*qdd_1_o_t_2 + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
+            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
+        /* (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real N_2_o_y = mu_2_o_y - f_3_o_z*root_2;
+        const real N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2;
+        /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
+        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
+        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z;
+        /* (upu-N59) velocity and gravity terms of the leg force */
+        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
+            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
+        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
+            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
+        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
+            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
+        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
+        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
+        /* (M7) rotational part of Z */
+        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
+            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
+        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
+            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
+        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
+            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
+        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
+        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real Hk_a_1_x = n_m1_in_base_x + n_c_t_2*q_in_base_z - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = n_m1_in_base_y + n_c_t_3*q_in_base_x - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = n_m1_in_base_z + n_c_t*q_in_base_y - n_c_t_2*q_in_base_x;
+        /* (M11) part of the constraint's second derivative that does not hold the acceleration */
+        const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_upu_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_upu_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_upu_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_upu_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_upu_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_upu_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_12 : M_ta_t_12;  /* total_upu_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_13 : M_ta_t_13;  /* total_upu_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_14 : M_ta_t_14;  /* total_upu_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_15 : M_ta_t_15;  /* total_upu_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_16 : M_ta_t_16;  /* total_upu_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_17 : M_ta_t_17;  /* total_upu_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_18 : M_ta_t_18;  /* total_upu_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_19 : M_ta_t_19;  /* total_upu_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_20 : M_ta_t_20;  /* total_upu_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_upu_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_upu_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_upu_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upu_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upu_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upu_zz_3 */
+        o->sum[21][k] = add ? o->sum[21][k] + U_in_base_x : U_in_base_x;  /* total_upu_x */
+        o->sum[22][k] = add ? o->sum[22][k] + U_in_base_y : U_in_base_y;  /* total_upu_y */
+        o->sum[23][k] = add ? o->sum[23][k] + U_in_base_z : U_in_base_z;  /* total_upu_z */
+        o->sum[24][k] = add ? o->sum[24][k] + Z_a_t : Z_a_t;  /* total_upu_x_2 */
+        o->sum[25][k] = add ? o->sum[25][k] + Z_a_t_2 : Z_a_t_2;  /* total_upu_y_2 */
+        o->sum[26][k] = add ? o->sum[26][k] + Z_a_t_3 : Z_a_t_3;  /* total_upu_z_2 */
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
+        o->entry[3][k] = H_a_3_t;
+        o->entry[4][k] = H_a_3_t_2;
+        o->entry[5][k] = H_a_3_t_3;
+        o->entry[6][k] = -n_c_t;
+        o->entry[7][k] = -n_c_t_2;
+        o->entry[8][k] = -n_c_t_3;
+        o->entry[9][k] = Hk_a_1_x;
+        o->entry[10][k] = Hk_a_1_y;
+        o->entry[11][k] = Hk_a_1_z;
+        o->entry[12][k] = gamma_c1;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void dynamics_place_upu(size_t w, const dynamics_results_upu *o, size_t leg, size_t first,
+    real *H, real *Hk, real *constraint_bias, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        H[(9 + leg)*w + k] = o->entry[3][first + k];
+        H[(12 + leg)*w + k] = o->entry[4][first + k];
+        H[(15 + leg)*w + k] = o->entry[5][first + k];
+        Hk[(leg)*w + k] = o->entry[6][first + k];
+        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
+        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
+        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
+        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
+        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
+        constraint_bias[(leg)*w + k] = o->entry[12][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s, real *M, real
+    *Z)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real h_star_in_base_x = s->h_star_in_base_x[k];
+        const real h_star_in_base_y = s->h_star_in_base_y[k];
+        const real h_star_in_base_z = s->h_star_in_base_z[k];
+        const real J_star_t_10 = s->J_star_t_10[k];
+        const real J_star_t_11 = s->J_star_t_11[k];
+        const real J_star_t_12 = s->J_star_t_12[k];
+        const real J_star_t_14 = s->J_star_t_14[k];
+        const real J_star_t_15 = s->J_star_t_15[k];
+        const real J_star_t_17 = s->J_star_t_17[k];
+        const real Z_p_x = s->Z_p_x[k];
+        const real Z_p_y = s->Z_p_y[k];
+        const real Z_p_z = s->Z_p_z[k];
+        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
+        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
+        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
+        const real total_upu_xx = s->sum[0][k];
+        const real total_upu_xy = s->sum[1][k];
+        const real total_upu_xz = s->sum[2][k];
+        const real total_upu_yy = s->sum[3][k];
+        const real total_upu_yz = s->sum[4][k];
+        const real total_upu_zz = s->sum[5][k];
+        const real total_upu_xx_2 = s->sum[6][k];
+        const real total_upu_xy_2 = s->sum[7][k];
+        const real total_upu_xz_2 = s->sum[8][k];
+        const real total_upu_yx = s->sum[9][k];
+        const real total_upu_yy_2 = s->sum[10][k];
+        const real total_upu_yz_2 = s->sum[11][k];
+        const real total_upu_zx = s->sum[12][k];
+        const real total_upu_zy = s->sum[13][k];
+        const real total_upu_zz_2 = s->sum[14][k];
+        const real total_upu_xx_3 = s->sum[15][k];
+        const real total_upu_xy_3 = s->sum[16][k];
+        const real total_upu_xz_3 = s->sum[17][k];
+        const real total_upu_yy_3 = s->sum[18][k];
+        const real total_upu_yz_3 = s->sum[19][k];
+        const real total_upu_zz_3 = s->sum[20][k];
+        const real total_upu_x = s->sum[21][k];
+        const real total_upu_y = s->sum[22][k];
+        const real total_upu_z = s->sum[23][k];
+        const real total_upu_x_2 = s->sum[24][k];
+        const real total_upu_y_2 = s->sum[25][k];
+        const real total_upu_z_2 = s->sum[26][k];
+        const real platform_mass = m->platform_mass;
+        /* (M1) translational block of M */
+        const real M_tt_xx = platform_mass + total_upu_xx;
+        const real M_tt_yy = platform_mass + total_upu_yy;
+        const real M_tt_zz = platform_mass + total_upu_zz;
+        /* (M2) coupling block of M */
+        const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
+        const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
+        const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
+        const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
+        const real M_ta_zx = h_star_in_base_y - total_upu_zx;
+        const real M_ta_zy = total_upu_zy - h_star_in_base_x;
+        /* (M3) rotational block of M */
+        const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
+        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
+        const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
+        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
+        const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
+        const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
+        /* (M5) translational part of Z */
+        const real Z_t_x = Z_p_x + total_upu_x;
+        const real Z_t_y = Z_p_y + total_upu_y;
+        const real Z_t_z = Z_p_z + total_upu_z;
+        /* (M7) rotational part of Z */
+        const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
+        const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
+        const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
+        M[0*w + k] = M_tt_xx;
+        M[1*w + k] = total_upu_xy;
+        M[6*w + k] = total_upu_xy;
+        M[2*w + k] = total_upu_xz;
+        M[12*w + k] = total_upu_xz;
+        M[7*w + k] = M_tt_yy;
+        M[8*w + k] = total_upu_yz;
+        M[13*w + k] = total_upu_yz;
+        M[14*w + k] = M_tt_zz;
+        M[3*w + k] = -total_upu_xx_2;
+        M[18*w + k] = -total_upu_xx_2;
+        M[4*w + k] = M_ta_xy;
+        M[24*w + k] = M_ta_xy;
+        M[5*w + k] = M_ta_xz;
+        M[30*w + k] = M_ta_xz;
+        M[9*w + k] = M_ta_yx;
+        M[19*w + k] = M_ta_yx;
+        M[10*w + k] = total_upu_yy_2;
+        M[25*w + k] = total_upu_yy_2;
+        M[11*w + k] = M_ta_yz;
+        M[31*w + k] = M_ta_yz;
+        M[15*w + k] = M_ta_zx;
+        M[20*w + k] = M_ta_zx;
+        M[16*w + k] = M_ta_zy;
+        M[26*w + k] = M_ta_zy;
+        M[17*w + k] = total_upu_zz_2;
+        M[32*w + k] = total_upu_zz_2;
+        M[21*w + k] = M_aa_xx;
+        M[22*w + k] = M_aa_xy;
+        M[27*w + k] = M_aa_xy;
+        M[23*w + k] = M_aa_xz;
+        M[33*w + k] = M_aa_xz;
+        M[28*w + k] = M_aa_yy;
+        M[29*w + k] = M_aa_yz;
+        M[34*w + k] = M_aa_yz;
+        M[35*w + k] = M_aa_zz;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_t_z;
+        Z[3*w + k] = Z_a_x;
+        Z[4*w + k] = Z_a_y;
+        Z[5*w + k] = Z_a_z;
+    }
+}
+
+INLINE void dynamics_run(const prepared *m, size_t w, const real *X, const real *V, real *M, real
+    *Z, real *H, real *Hk, real *constraint_bias, verdict *t)
+{
+    dynamics_values values, *const s = &values;
+    dynamics_results_upu results_upu;
+    dynamics_before(m, w, X, V, s, t);
+    if (w == 1) {  /* the legs side by side */
+        dynamics_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            dynamics_place_upu(w, &results_upu, leg, leg, H, Hk, constraint_bias, t);
+        }
+        for (size_t n = 0; n < 27; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_upu.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            dynamics_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
+            dynamics_place_upu(w, &results_upu, leg, 0, H, Hk, constraint_bias, t);
+        }
+        for (size_t n = 0; n < 27; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_upu.sum[n][k];
+            }
+        }
+    }
+    dynamics_after(m, w, s, M, Z);
+}
+
+INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real *V, real *M, real
+    *Z, real *H, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], M_of[36*LANES], Z_of[6*LANES], H_of[18*LANES], Hk_of[18*LANES],
+        constraint_bias_of[3*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    dynamics_run(m, w, X, V, M_of, Z_of, H_of, Hk_of, constraint_bias_of, t);
+    check(36, w, M_of, t->overflow);
+    check(6, w, Z_of, t->overflow);
+    check(18, w, H_of, t->overflow);
+    judge(t, w, code);
+    deliver(M_of, 36, w, code, M);
+    deliver(Z_of, 6, w, code, Z);
+    deliver(H_of, 18, w, code, H);
+}
+
+/* ---- M: 1068 mul, 735 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
+        h_star_in_base_y[LANES], h_star_in_base_z[LANES], J_star_t_10[LANES], J_star_t_11[LANES],
+        J_star_t_12[LANES], J_star_t_14[LANES], J_star_t_15[LANES], J_star_t_17[LANES],
+        sum[21][LANES];
+} M_values;
+typedef struct {
+    real sum[21][8], singular[8];
+} M_results_upu;
+
+INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real J_star_t_6 = m->J_star_t_6;
+        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_yz = m->J_star_yz;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
+        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
+        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        /* (L3) inertia tensor about the platform origin */
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_6*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_6*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_6*R_zy;
+        const real J_star_t_4 = J_star_t_8*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_8*R_yz - J_star_xz*R_yx;
+        const real J_star_t_7 = J_star_t_8*R_zz - J_star_xz*R_zx;
+        const real J_star_t_9 = J_star_t*R_xy - J_star_t_4*R_xz;
+        const real J_star_t_10 = 2*J_star_t_9 + J_star_xx;
+        const real J_star_t_11 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
+            J_star_t_5*R_xz;
+        const real J_star_t_12 = J_star_t*R_zy + J_star_t_3*R_xy - J_star_t_4*R_zz -
+            J_star_t_7*R_xz;
+        const real J_star_t_13 = J_star_t_2*R_yy - J_star_t_5*R_yz;
+        const real J_star_t_14 = 2*J_star_t_13 + J_star_xx;
+        const real J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
+            J_star_t_7*R_yz;
+        const real J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz;
+        const real J_star_t_17 = 2*J_star_t_16 + J_star_xx;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->h_star_in_base_x[k] = h_star_in_base_x;
+        s->h_star_in_base_y[k] = h_star_in_base_y;
+        s->h_star_in_base_z[k] = h_star_in_base_z;
+        s->J_star_t_10[k] = J_star_t_10;
+        s->J_star_t_11[k] = J_star_t_11;
+        s->J_star_t_12[k] = J_star_t_12;
+        s->J_star_t_14[k] = J_star_t_14;
+        s->J_star_t_15[k] = J_star_t_15;
+        s->J_star_t_17[k] = J_star_t_17;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_values *s, size_t
+    states, size_t count, int add, M_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real J_group_2_xx = m->J_group_2_xx[i];
+        const real J_group_2_xy = m->J_group_2_xy[i];
+        const real J_group_2_xz = m->J_group_2_xz[i];
+        const real J_group_2_yy = m->J_group_2_yy[i];
+        const real J_group_2_yz = m->J_group_2_yz[i];
+        const real J_group_2_zz = m->J_group_2_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real h_3_x = m->h_3_x[i];
+        const real h_3_y = m->h_3_y[i];
+        const real h_3_z = m->h_3_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_25*n_c_z;
+        /* (upu-A19) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real d_alpha_1_t = inv_w_1_t_25*s_2;
+        const real d_alpha_1_t_2 = c_2*inv_w_1_t_25;
+        /* (upu-N5) coefficient of the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real d_acc_3_t = d_alpha_1_t_2*root_2;
+        /* (upu-N9) coefficient of the acceleration in: inertia force of link 3 from its turning about its
+           reference point */
+        const real d_phi_3_t = h_3_z*inv_root_2;
+        const real d_phi_3_t_2 = d_alpha_1_t_2*h_3_y;
+        /* (upu-N36) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d_Gamma_1_z = s_2*(J_group_2_xx*d_alpha_1_t - J_group_2_xy*d_alpha_1_t_2 -
+            d_acc_3_t*h_3_z) - c_2*(J_group_2_xy*d_alpha_1_t - J_group_2_yy*d_alpha_1_t_2 -
+            d_acc_3_t*h_3_x - root_2*(d_acc_3_t*upu_link3_mass + d_alpha_1_t_2*h_3_x -
+            d_alpha_1_t*h_3_z));
+        /* (upu-N40) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_t = inv_root_2*(J_group_2_xz*d_alpha_1_t - J_group_2_yz*d_alpha_1_t_2 -
+            d_alpha_1_t*h_3_y*root_2);
+        /* (upu-N54) inertia of the leg at the connection point, without the mass gathered there */
+        const real Q_t = inv_root_2*(h_3_x + J_group_2_zz*inv_root_2 + root_2*(upu_link3_mass +
+            h_3_x*inv_root_2)) - upu_link3_mass;
+        const real Q_t_2 = R(0.5)*Q_t;
+        const real Q_t_3 = d_Gamma_1_z*inv_w_1_t_25 - upu_link3_mass;
+        const real Q_t_4 = R(0.5)*Q_t_3;
+        const real Q_t_5 = Q_t_2*axis_y_upu_axes2_in_base_x + axis_x_upu_axes2_x*d_phi_3_t +
+            axis_z_upu_axes2_in_base_x*d_G_t;
+        const real Q_t_6 = Q_t_2*axis_y_upu_axes2_in_base_y + axis_x_upu_axes2_y*d_phi_3_t +
+            axis_z_upu_axes2_in_base_y*d_G_t;
+        const real Q_t_7 = Q_t_2*axis_y_upu_axes2_in_base_z + axis_x_upu_axes2_z*d_phi_3_t +
+            axis_z_upu_axes2_in_base_z*d_G_t;
+        const real Q_t_8 = Q_t_4*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*d_phi_3_t_2;
+        const real Q_t_9 = Q_t_4*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*d_phi_3_t_2;
+        const real Q_t_10 = Q_t_4*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*d_phi_3_t_2;
+        const real Q_t_11 = Q_t_5*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_x;
+        const real Q_t_12 = 2*Q_t_11 + upu_link3_mass;
+        const real Q_t_13 = Q_t_5*axis_y_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_x +
+            Q_t_8*axis_z_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_x;
+        const real Q_t_14 = Q_t_10*axis_z_upu_axes2_in_base_x + Q_t_5*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_x + Q_t_8*axis_z_upu_axes2_in_base_z;
+        const real Q_t_15 = Q_t_6*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_y;
+        const real Q_t_16 = 2*Q_t_15 + upu_link3_mass;
+        const real Q_t_17 = Q_t_10*axis_z_upu_axes2_in_base_y + Q_t_6*axis_y_upu_axes2_in_base_z +
+            Q_t_7*axis_y_upu_axes2_in_base_y + Q_t_9*axis_z_upu_axes2_in_base_z;
+        const real Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z;
+        const real Q_t_19 = 2*Q_t_18 + upu_link3_mass;
+        /* (upu-V15) moment part of reciprocal wrench 1 */
+        const real o_1_x = end_p1_r3_y*w_1_t_4;
+        const real o_1_y = end_p1_r3_x*w_1_t_4;
+        /* (upu-A18) coefficient of the acceleration in: angular acceleration of link 1 */
+        const real d0_alpha_1_xx = o_1_x*s_2;
+        const real d0_alpha_1_xy = o_1_y*s_2;
+        const real d0_alpha_1_yx = c_2*o_1_x;
+        const real d0_alpha_1_yy = c_2*o_1_y;
+        /* (upu-N4) coefficient of the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real d0_acc_3_t = d0_alpha_1_yx*root_2;
+        const real d0_acc_3_t_2 = d0_alpha_1_yy*root_2;
+        /* (upu-N8) coefficient of the acceleration in: inertia force of link 3 from its turning about its
+           reference point */
+        const real d0_phi_3_t = d0_alpha_1_yx*h_3_y;
+        const real d0_phi_3_t_2 = d0_alpha_1_yy*h_3_y;
+        /* (upu-N35) coefficient of the acceleration in: moment about axis 1 of the distal links' inertia
+           and weight */
+        const real d0_Gamma_1_x = s_2*(J_group_2_xy*d0_alpha_1_yx + d0_acc_3_t*h_3_z -
+            J_group_2_xx*d0_alpha_1_xx) - c_2*(J_group_2_yy*d0_alpha_1_yx + d0_acc_3_t*h_3_x -
+            J_group_2_xy*d0_alpha_1_xx - root_2*(d0_alpha_1_xx*h_3_z - d0_acc_3_t*upu_link3_mass -
+            d0_alpha_1_yx*h_3_x));
+        const real d0_Gamma_1_y = s_2*(J_group_2_xx*d0_alpha_1_xy - J_group_2_xy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_z) - c_2*(J_group_2_xy*d0_alpha_1_xy - J_group_2_yy*d0_alpha_1_yy -
+            d0_acc_3_t_2*h_3_x - root_2*(d0_acc_3_t_2*upu_link3_mass + d0_alpha_1_yy*h_3_x -
+            d0_alpha_1_xy*h_3_z));
+        /* (upu-N39) coefficient of the acceleration in: force at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_t = d0_Gamma_1_x*inv_w_1_t_25;
+        const real d0_G_t_2 = d0_Gamma_1_y*inv_w_1_t_25;
+        const real d0_G_t_3 = inv_root_2*(J_group_2_yz*d0_alpha_1_yx + d0_alpha_1_xx*h_3_y*root_2
+            - J_group_2_xz*d0_alpha_1_xx);
+        const real d0_G_t_4 = inv_root_2*(J_group_2_xz*d0_alpha_1_xy - J_group_2_yz*d0_alpha_1_yy
+            - d0_alpha_1_xy*h_3_y*root_2);
+        /* (M2) coupling block of M */
+        const real M_ta_t = Q_t_13*q_in_base_z;
+        const real M_ta_t_2 = Q_t_14*q_in_base_y;
+        const real M_ta_t_3 = Q_t_12*q_in_base_z - Q_t_14*q_in_base_x;
+        const real M_ta_t_4 = Q_t_12*q_in_base_y - Q_t_13*q_in_base_x;
+        const real M_ta_t_5 = Q_t_16*q_in_base_z - Q_t_17*q_in_base_y;
+        const real M_ta_t_6 = Q_t_17*q_in_base_x;
+        const real M_ta_t_7 = M_ta_t - M_ta_t_6;
+        const real M_ta_t_8 = Q_t_13*q_in_base_y - Q_t_16*q_in_base_x;
+        const real M_ta_t_9 = Q_t_17*q_in_base_z - Q_t_19*q_in_base_y;
+        const real M_ta_t_10 = Q_t_14*q_in_base_z - Q_t_19*q_in_base_x;
+        const real M_ta_t_11 = M_ta_t_6 - M_ta_t_2;
+        /* (upu-N51) coefficient of the acceleration in: leg force on the platform without actuation and
+           without the mass at the connection point */
+        const real d0_c_in_base_x = -axis_x_upu_axes2_x*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_x*d0_G_t_3 - axis_z_upu_axes2_in_base_x*d0_G_t;
+        const real d0_c_in_base_y = -axis_x_upu_axes2_y*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_y*d0_G_t_3 - axis_z_upu_axes2_in_base_y*d0_G_t;
+        const real d0_c_in_base_z = -axis_x_upu_axes2_z*d0_phi_3_t -
+            axis_y_upu_axes2_in_base_z*d0_G_t_3 - axis_z_upu_axes2_in_base_z*d0_G_t;
+        const real d0_c_in_base_x_2 = axis_x_upu_axes2_x*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_x*d0_G_t_4 - axis_z_upu_axes2_in_base_x*d0_G_t_2;
+        const real d0_c_in_base_y_2 = axis_x_upu_axes2_y*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_y*d0_G_t_4 - axis_z_upu_axes2_in_base_y*d0_G_t_2;
+        const real d0_c_in_base_z_2 = axis_x_upu_axes2_z*d0_phi_3_t_2 -
+            axis_y_upu_axes2_in_base_z*d0_G_t_4 - axis_z_upu_axes2_in_base_z*d0_G_t_2;
+        const real d0_c_in_base_y_3 = axis_x_upu_axes2_y*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_x_2;
+        const real d0_c_in_base_z_3 = axis_x_upu_axes2_z*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_x_2;
+        const real d0_c_in_base_x_3 = axis_x_upu_axes2_x*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_y_2;
+        const real d0_c_in_base_y_4 = axis_x_upu_axes2_y*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_y_2;
+        const real d0_c_in_base_z_4 = axis_x_upu_axes2_z*d0_c_in_base_y +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_y_2;
+        const real d0_c_in_base_x_4 = axis_x_upu_axes2_x*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_z_2;
+        const real d0_c_in_base_y_5 = axis_x_upu_axes2_y*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_y*d0_c_in_base_z_2;
+        const real d0_c_in_base_z_5 = axis_x_upu_axes2_z*d0_c_in_base_z +
+            axis_y_upu_axes2_in_base_z*d0_c_in_base_z_2;
+        /* (M2) coupling block of M */
+        const real M_ta_t_12 = M_ta_t + axis_x_upu_axes2_x*d0_c_in_base_x +
+            axis_y_upu_axes2_in_base_x*d0_c_in_base_x_2 - M_ta_t_2;
+        const real M_ta_t_13 = M_ta_t_3 - d0_c_in_base_y_3;
+        const real M_ta_t_14 = M_ta_t_4 + d0_c_in_base_z_3;
+        const real M_ta_t_15 = M_ta_t_5 + d0_c_in_base_x_3;
+        const real M_ta_t_16 = M_ta_t_7 - d0_c_in_base_y_4;
+        const real M_ta_t_17 = M_ta_t_8 + d0_c_in_base_z_4;
+        const real M_ta_t_18 = M_ta_t_9 + d0_c_in_base_x_4;
+        const real M_ta_t_19 = M_ta_t_10 - d0_c_in_base_y_5;
+        const real M_ta_t_20 = M_ta_t_11 - d0_c_in_base_z_5;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_m1_t = d0_Gamma_1_x*w_1_t_4;
+        const real d0_G_m1_t_2 = d0_Gamma_1_y*w_1_t_4;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m1_t = c_2*h_3_y*w_1_t_4;
+        const real d_G_m1_t_2 = w_1_t_4*(s_2*(J_group_2_xz*inv_root_2 - h_3_y) -
+            J_group_2_yz*c_2*inv_root_2);
+        const real d_G_m1_t_3 = d_Gamma_1_z*w_1_t_4;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y;
+        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y;
+        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y;
+        /* (upu-N44) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m1_in_base_x = axis_y_upu_axes2_in_base_x*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_x*d_G_m1_t_3 - axis_x_upu_axes2_x*d_G_m1_t;
+        const real d_G_m1_in_base_y = axis_y_upu_axes2_in_base_y*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_y*d_G_m1_t_3 - axis_x_upu_axes2_y*d_G_m1_t;
+        const real d_G_m1_in_base_z = axis_y_upu_axes2_in_base_z*d_G_m1_t_2 +
+            axis_z_upu_axes2_in_base_z*d_G_m1_t_3 - axis_x_upu_axes2_z*d_G_m1_t;
+        /* (upu-N48) coefficient of the acceleration in: moment at the connection point that balances the
+           leg's inertia and weight along all freedoms */
+        const real d_G_m_xx = d_G_m1_in_base_x*n_m1_in_base_x;
+        const real d_G_m_xy = d_G_m1_in_base_y*n_m1_in_base_x;
+        const real d_G_m_xz = d_G_m1_in_base_z*n_m1_in_base_x;
+        const real d_G_m_yx = d_G_m1_in_base_x*n_m1_in_base_y;
+        /* (upu-N43) coefficient of the acceleration in: moment along moment direction 1 that balances the
+           leg's inertia and weight along all freedoms */
+        const real d0_G_m1_in_base_y = axis_x_upu_axes2_y*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_y*d0_G_m1_t_2;
+        const real d0_G_m1_in_base_z = axis_x_upu_axes2_z*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_z*d0_G_m1_t_2;
+        /* (M3) rotational block of M */
+        const real M_aa_t = M_ta_t_5*q_in_base_z + d0_c_in_base_x_3*q_in_base_z +
+            d_G_m_xz*q_in_base_y + n_m1_in_base_x*(axis_x_upu_axes2_x*d0_G_m1_t +
+            axis_y_upu_axes2_in_base_x*d0_G_m1_t_2) - M_ta_t_9*q_in_base_y -
+            d0_c_in_base_x_4*q_in_base_y - d_G_m_xy*q_in_base_z;
+        const real M_aa_t_2 = M_ta_t_10*q_in_base_y + d0_G_m1_in_base_y*n_m1_in_base_x +
+            d0_c_in_base_y_4*q_in_base_z + d_G_m_xx*q_in_base_z - M_ta_t_7*q_in_base_z -
+            d0_c_in_base_y_5*q_in_base_y - d_G_m_xz*q_in_base_x;
+        const real M_aa_t_3 = M_ta_t_11*q_in_base_y + M_ta_t_8*q_in_base_z +
+            d0_G_m1_in_base_z*n_m1_in_base_x + d0_c_in_base_z_4*q_in_base_z + d_G_m_xy*q_in_base_x
+            - d0_c_in_base_z_5*q_in_base_y - d_G_m_xx*q_in_base_y;
+        const real M_aa_t_4 = M_ta_t_3*q_in_base_z + d0_G_m1_in_base_y*n_m1_in_base_y +
+            d0_c_in_base_y_5*q_in_base_x + d_G_m_yx*q_in_base_z - M_ta_t_10*q_in_base_x -
+            d0_c_in_base_y_3*q_in_base_z - d_G_m1_in_base_z*n_m1_in_base_y*q_in_base_x;
+        const real M_aa_t_5 = M_ta_t_11*q_in_base_x + M_ta_t_4*q_in_base_z +
+            d0_c_in_base_z_3*q_in_base_z + d_G_m_yx*q_in_base_y - d0_G_m1_in_base_z*n_m1_in_base_y
+            - d0_c_in_base_z_5*q_in_base_x - d_G_m1_in_base_y*n_m1_in_base_y*q_in_base_x;
+        const real M_aa_t_6 = M_ta_t_4*q_in_base_y + d0_G_m1_in_base_z*n_m1_in_base_z +
+            d0_c_in_base_z_3*q_in_base_y + d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x -
+            M_ta_t_8*q_in_base_x - d0_c_in_base_z_4*q_in_base_x -
+            d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + Q_t_12 : Q_t_12;  /* total_upu_xx */
+        o->sum[1][k] = add ? o->sum[1][k] + Q_t_13 : Q_t_13;  /* total_upu_xy */
+        o->sum[2][k] = add ? o->sum[2][k] + Q_t_14 : Q_t_14;  /* total_upu_xz */
+        o->sum[3][k] = add ? o->sum[3][k] + Q_t_16 : Q_t_16;  /* total_upu_yy */
+        o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_upu_yz */
+        o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_upu_zz */
+        o->sum[6][k] = add ? o->sum[6][k] + M_ta_t_12 : M_ta_t_12;  /* total_upu_xx_2 */
+        o->sum[7][k] = add ? o->sum[7][k] + M_ta_t_13 : M_ta_t_13;  /* total_upu_xy_2 */
+        o->sum[8][k] = add ? o->sum[8][k] + M_ta_t_14 : M_ta_t_14;  /* total_upu_xz_2 */
+        o->sum[9][k] = add ? o->sum[9][k] + M_ta_t_15 : M_ta_t_15;  /* total_upu_yx */
+        o->sum[10][k] = add ? o->sum[10][k] + M_ta_t_16 : M_ta_t_16;  /* total_upu_yy_2 */
+        o->sum[11][k] = add ? o->sum[11][k] + M_ta_t_17 : M_ta_t_17;  /* total_upu_yz_2 */
+        o->sum[12][k] = add ? o->sum[12][k] + M_ta_t_18 : M_ta_t_18;  /* total_upu_zx */
+        o->sum[13][k] = add ? o->sum[13][k] + M_ta_t_19 : M_ta_t_19;  /* total_upu_zy */
+        o->sum[14][k] = add ? o->sum[14][k] + M_ta_t_20 : M_ta_t_20;  /* total_upu_zz_2 */
+        o->sum[15][k] = add ? o->sum[15][k] + M_aa_t : M_aa_t;  /* total_upu_xx_3 */
+        o->sum[16][k] = add ? o->sum[16][k] + M_aa_t_2 : M_aa_t_2;  /* total_upu_xy_3 */
+        o->sum[17][k] = add ? o->sum[17][k] + M_aa_t_3 : M_aa_t_3;  /* total_upu_xz_3 */
+        o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upu_yy_3 */
+        o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upu_yz_3 */
+        o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upu_zz_3 */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void M_place_upu(size_t w, const M_results_upu *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real h_star_in_base_x = s->h_star_in_base_x[k];
+        const real h_star_in_base_y = s->h_star_in_base_y[k];
+        const real h_star_in_base_z = s->h_star_in_base_z[k];
+        const real J_star_t_10 = s->J_star_t_10[k];
+        const real J_star_t_11 = s->J_star_t_11[k];
+        const real J_star_t_12 = s->J_star_t_12[k];
+        const real J_star_t_14 = s->J_star_t_14[k];
+        const real J_star_t_15 = s->J_star_t_15[k];
+        const real J_star_t_17 = s->J_star_t_17[k];
+        const real total_upu_xx = s->sum[0][k];
+        const real total_upu_xy = s->sum[1][k];
+        const real total_upu_xz = s->sum[2][k];
+        const real total_upu_yy = s->sum[3][k];
+        const real total_upu_yz = s->sum[4][k];
+        const real total_upu_zz = s->sum[5][k];
+        const real total_upu_xx_2 = s->sum[6][k];
+        const real total_upu_xy_2 = s->sum[7][k];
+        const real total_upu_xz_2 = s->sum[8][k];
+        const real total_upu_yx = s->sum[9][k];
+        const real total_upu_yy_2 = s->sum[10][k];
+        const real total_upu_yz_2 = s->sum[11][k];
+        const real total_upu_zx = s->sum[12][k];
+        const real total_upu_zy = s->sum[13][k];
+        const real total_upu_zz_2 = s->sum[14][k];
+        const real total_upu_xx_3 = s->sum[15][k];
+        const real total_upu_xy_3 = s->sum[16][k];
+        const real total_upu_xz_3 = s->sum[17][k];
+        const real total_upu_yy_3 = s->sum[18][k];
+        const real total_upu_yz_3 = s->sum[19][k];
+        const real total_upu_zz_3 = s->sum[20][k];
+        const real platform_mass = m->platform_mass;
+        /* (M1) translational block of M */
+        const real M_tt_xx = platform_mass + total_upu_xx;
+        const real M_tt_yy = platform_mass + total_upu_yy;
+        const real M_tt_zz = platform_mass + total_upu_zz;
+        /* (M2) coupling block of M */
+        const real M_ta_xy = h_star_in_base_z + total_upu_xy_2;
+        const real M_ta_xz = -h_star_in_base_y - total_upu_xz_2;
+        const real M_ta_yx = -h_star_in_base_z - total_upu_yx;
+        const real M_ta_yz = h_star_in_base_x - total_upu_yz_2;
+        const real M_ta_zx = h_star_in_base_y - total_upu_zx;
+        const real M_ta_zy = total_upu_zy - h_star_in_base_x;
+        /* (M3) rotational block of M */
+        const real M_aa_xx = J_star_t_10 + total_upu_xx_3;
+        const real M_aa_xy = J_star_t_11 + total_upu_xy_3;
+        const real M_aa_xz = J_star_t_12 + total_upu_xz_3;
+        const real M_aa_yy = J_star_t_14 + total_upu_yy_3;
+        const real M_aa_yz = J_star_t_15 - total_upu_yz_3;
+        const real M_aa_zz = J_star_t_17 + total_upu_zz_3;
+        M[0*w + k] = M_tt_xx;
+        M[1*w + k] = total_upu_xy;
+        M[6*w + k] = total_upu_xy;
+        M[2*w + k] = total_upu_xz;
+        M[12*w + k] = total_upu_xz;
+        M[7*w + k] = M_tt_yy;
+        M[8*w + k] = total_upu_yz;
+        M[13*w + k] = total_upu_yz;
+        M[14*w + k] = M_tt_zz;
+        M[3*w + k] = -total_upu_xx_2;
+        M[18*w + k] = -total_upu_xx_2;
+        M[4*w + k] = M_ta_xy;
+        M[24*w + k] = M_ta_xy;
+        M[5*w + k] = M_ta_xz;
+        M[30*w + k] = M_ta_xz;
+        M[9*w + k] = M_ta_yx;
+        M[19*w + k] = M_ta_yx;
+        M[10*w + k] = total_upu_yy_2;
+        M[25*w + k] = total_upu_yy_2;
+        M[11*w + k] = M_ta_yz;
+        M[31*w + k] = M_ta_yz;
+        M[15*w + k] = M_ta_zx;
+        M[20*w + k] = M_ta_zx;
+        M[16*w + k] = M_ta_zy;
+        M[26*w + k] = M_ta_zy;
+        M[17*w + k] = total_upu_zz_2;
+        M[32*w + k] = total_upu_zz_2;
+        M[21*w + k] = M_aa_xx;
+        M[22*w + k] = M_aa_xy;
+        M[27*w + k] = M_aa_xy;
+        M[23*w + k] = M_aa_xz;
+        M[33*w + k] = M_aa_xz;
+        M[28*w + k] = M_aa_yy;
+        M[29*w + k] = M_aa_yz;
+        M[34*w + k] = M_aa_yz;
+        M[35*w + k] = M_aa_zz;
+    }
+}
+
+INLINE void M_run(const prepared *m, size_t w, const real *X, real *M, verdict *t)
+{
+    M_values values, *const s = &values;
+    M_results_upu results_upu;
+    M_before(m, w, X, s, t);
+    if (w == 1) {  /* the legs side by side */
+        M_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            M_place_upu(w, &results_upu, leg, t);
+        }
+        for (size_t n = 0; n < 21; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_upu.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            M_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
+            M_place_upu(w, &results_upu, 0, t);
+        }
+        for (size_t n = 0; n < 21; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_upu.sum[n][k];
+            }
+        }
+    }
+    M_after(m, w, s, M);
+}
+
+INLINE void M_any(const prepared *m, size_t w, const real *X, real *M, int *code)
+{
+    real X_in[7*LANES], M_of[36*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    M_run(m, w, X, M_of, t);
+    check(36, w, M_of, t->overflow);
+    judge(t, w, code);
+    deliver(M_of, 36, w, code, M);
+}
+
+/* ---- Z: 849 mul, 618 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES], Z_p_x[LANES],
+        Z_p_y[LANES], Z_p_z[LANES], Z_q_in_base_x[LANES], Z_q_in_base_y[LANES], Z_q_in_base_z[LANES],
+        sum[6][LANES];
+} Z_values;
+typedef struct {
+    real sum[6][8], singular[8];
+} Z_results_upu;
+
+INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, Z_values *s,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_zz = m->J_star_zz;
+        const real Z_p_t = m->Z_p_t;
+        const real Z_p_t_2 = m->Z_p_t_2;
+        const real Z_p_t_3 = m->Z_p_t_3;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
+        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
+        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        /* (M4) centripetal force and weight of the platform */
+        const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
+        const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
+        const real Z_p_t_6 = h_star_in_base_y*omega_x - h_star_in_base_x*omega_y;
+        const real Z_p_x = Z_p_t_6*omega_y - Z_p_t - Z_p_t_5*omega_z;
+        const real Z_p_y = Z_p_t_4*omega_z - Z_p_t_2 - Z_p_t_6*omega_x;
+        const real Z_p_z = Z_p_t_5*omega_x - Z_p_t_3 - Z_p_t_4*omega_y;
+        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        const real g_r0_x_2 = R_xx*gravity_x + R_yx*gravity_y + R_zx*gravity_z;
+        const real g_r0_y_2 = R_xy*gravity_x + R_yy*gravity_y + R_zy*gravity_z;
+        const real g_r0_z_2 = R_xz*gravity_x + R_yz*gravity_y + R_zz*gravity_z;
+        const real Z_q_x = Z_q_t_3*omega_r0_y + g_r0_y_2*h_star_z - Z_q_t_2*omega_r0_z -
+            g_r0_z_2*h_star_y;
+        const real Z_q_y = Z_q_t*omega_r0_z + g_r0_z_2*h_star_x - Z_q_t_3*omega_r0_x -
+            g_r0_x_2*h_star_z;
+        const real Z_q_z = Z_q_t_2*omega_r0_x + g_r0_x_2*h_star_y - Z_q_t*omega_r0_y -
+            g_r0_y_2*h_star_x;
+        const real Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z;
+        const real Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z;
+        const real Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        s->Z_p_x[k] = Z_p_x;
+        s->Z_p_y[k] = Z_p_y;
+        s->Z_p_z[k] = Z_p_z;
+        s->Z_q_in_base_x[k] = Z_q_in_base_x;
+        s->Z_q_in_base_y[k] = Z_q_in_base_y;
+        s->Z_q_in_base_z[k] = Z_q_in_base_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_values *s, size_t
+    states, size_t count, int add, Z_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real J_group_2_xy = m->J_group_2_xy[i];
+        const real J_group_2_xz = m->J_group_2_xz[i];
+        const real J_group_2_yz = m->J_group_2_yz[i];
+        const real Sigma_2_xx = m->Sigma_2_xx[i];
+        const real Sigma_2_yy = m->Sigma_2_yy[i];
+        const real Sigma_2_zz = m->Sigma_2_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real g_r0_z = m->g_r0_z[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_2_z = m->h_2_z[i];
+        const real h_3_x = m->h_3_x[i];
+        const real h_3_y = m->h_3_y[i];
+        const real h_3_z = m->h_3_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upu-V18) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y);
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
+            eta_1*n_c_z);
+        /* (upu-V22) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-V24) centripetal tensor of link 2 */
+        const real W_2_t = omega_1_t*omega_1_t;
+        const real W_2_t_2 = omega_1_t_2*omega_1_t_2;
+        const real W_2_t_3 = qd_1_t*qd_1_t;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
+        const real bias_t_2 = bias_t*qd_1_t;
+        const real bias_t_3 = bias_t*omega_1_t_2;
+        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
+        /* (upu-A1) centripetal acceleration of the connection point */
+        const real u_1_x = S_dot_t_3*omega_y - S_dot_t_2*omega_z;
+        const real u_1_y = S_dot_t*omega_z - S_dot_t_3*omega_x;
+        const real u_1_z = S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_o_z = axis_z_upu_axes2_in_base_x*u_1_x + axis_z_upu_axes2_in_base_y*u_1_y +
+            axis_z_upu_axes2_in_base_z*u_1_z - bias_z;
+        /* (upu-A12) remainder without the acceleration in: acceleration of joint 1 */
+        const real qdd_1_o_t = axis_y_upu_axes2_in_base_x*u_1_x + axis_y_upu_axes2_in_base_y*u_1_y
+            + axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2;
+        const real qdd_1_o_t_2 = inv_root_2*qdd_1_o_t;
+        const real qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1);
+        /* (upu-A20) remainder without the acceleration in: angular acceleration of link 1 */
+        const real alpha_1_o_t = qdd_1_o_t_3*s_2;
+        const real alpha_1_o_t_2 = c_2*qdd_1_o_t_3;
+        /* (upu-A24) remainder without the acceleration in: angular acceleration of link 2 */
+        const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
+        const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
+        /* (upu-A26) acceleration tensor of link 2 */
+        const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t_2;
+        const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
+        const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
+        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
+        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
+        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
+        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
+        const real acc_3_o_x = axis_x_upu_axes2_x*u_1_x + axis_x_upu_axes2_y*u_1_y +
+            axis_x_upu_axes2_z*u_1_z - g_r3_x;
+        const real acc_3_o_y = bias_t_2 + qdd_1_o_t - g_r3_y;
+        const real acc_3_o_z = bias_t_3 + B_2_o_zx*root_2 - g_r1_x;
+        /* (upu-N14) remainder without the acceleration in: inertia force of link 3 less its weight */
+        const real f_3_o_x = acc_3_o_x*upu_link3_mass - B_2_o_xy*h_3_z - alpha_1_o_t_2*h_3_y -
+            h_3_x*(W_2_t_2 + W_2_t_3);
+        const real f_3_o_y = acc_3_o_y*upu_link3_mass + h_3_x*qdd_1_o_t_2 + h_3_z*(W_2_t +
+            W_2_t_3) - alpha_1_o_t*h_3_y;
+        const real f_3_o_z = B_2_o_zx*h_3_x + acc_3_o_z*upu_link3_mass - B_2_o_zy*h_3_z -
+            h_3_y*(W_2_t + W_2_t_2);
+        /* (upu-N21) remainder without the acceleration in: inertia moment of the links that turn with
+           link 2, about their reference points */
+        const real mu_2_o_x = B_2_o_zy*Sigma_2_yy + J_group_2_xz*qdd_1_o_t_2 +
+            J_group_2_yz*(W_2_t_2 - W_2_t_3) + Sigma_2_zz*alpha_1_o_t + g_r1_x*h_2_z +
+            g_r3_y*h_2_y - B_2_o_zx*J_group_2_xy - acc_3_o_y*h_3_y - acc_3_o_z*h_3_z;
+        const real mu_2_o_y = B_2_o_zy*J_group_2_xy + acc_3_o_x*h_3_y + g_r1_x*h_2_x -
+            B_2_o_xy*J_group_2_yz - B_2_o_zx*Sigma_2_xx - J_group_2_xz*(W_2_t - W_2_t_3) -
+            Sigma_2_zz*alpha_1_o_t_2 - acc_3_o_z*h_3_x - g_r3_x*h_2_y;
+        const real mu_2_o_z = J_group_2_xy*(W_2_t - W_2_t_2) + J_group_2_xz*alpha_1_o_t +
+            Sigma_2_xx*qdd_1_o_t_2 + acc_3_o_x*h_3_z + acc_3_o_y*h_3_x - B_2_o_xy*Sigma_2_yy -
+            J_group_2_yz*alpha_1_o_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
+        /* (upu-N25) remainder without the acceleration in: moment about joint 2 of the links from 2
+           outwards, the force at the connection point left out */
+        const real N_2_o_y = mu_2_o_y - f_3_o_z*root_2;
+        const real N_2_o_r0_y = mu_2_o_x*s_2 - N_2_o_y*c_2;
+        /* (upu-N41) remainder without the acceleration in: force at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real G_o_t = f_3_o_y + inv_root_2*mu_2_o_z;
+        const real G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25;
+        const real G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z;
+        /* (upu-N59) velocity and gravity terms of the leg force */
+        const real U_in_base_x = G_o_t*axis_y_upu_axes2_in_base_x +
+            G_o_t_2*axis_z_upu_axes2_in_base_x + axis_x_upu_axes2_x*f_3_o_x;
+        const real U_in_base_y = G_o_t*axis_y_upu_axes2_in_base_y +
+            G_o_t_2*axis_z_upu_axes2_in_base_y + axis_x_upu_axes2_y*f_3_o_x;
+        const real U_in_base_z = G_o_t*axis_y_upu_axes2_in_base_z +
+            G_o_t_2*axis_z_upu_axes2_in_base_z + axis_x_upu_axes2_z*f_3_o_x;
+        /* (upu-N49) remainder without the acceleration in: moment at the connection point that balances
+           the leg's inertia and weight along all freedoms */
+        const real G_m_o_x = G_o_t_3*end_p1_r3_y;
+        const real G_m_o_y = G_o_t_3*end_p1_r3_x;
+        /* (M7) rotational part of Z */
+        const real Z_a_t = G_m_o_y*axis_y_upu_axes2_in_base_x + U_in_base_z*q_in_base_y -
+            G_m_o_x*axis_x_upu_axes2_x - U_in_base_y*q_in_base_z;
+        const real Z_a_t_2 = G_m_o_y*axis_y_upu_axes2_in_base_y + U_in_base_x*q_in_base_z -
+            G_m_o_x*axis_x_upu_axes2_y - U_in_base_z*q_in_base_x;
+        const real Z_a_t_3 = G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x -
+            G_m_o_x*axis_x_upu_axes2_z - U_in_base_x*q_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_upu_x */
+        o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_upu_y */
+        o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_upu_z */
+        o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_upu_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_upu_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_upu_z_2 */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void Z_place_upu(size_t w, const Z_results_upu *o, size_t first, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void Z_after(size_t w, const Z_values *s, real *Z)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real Z_p_x = s->Z_p_x[k];
+        const real Z_p_y = s->Z_p_y[k];
+        const real Z_p_z = s->Z_p_z[k];
+        const real Z_q_in_base_x = s->Z_q_in_base_x[k];
+        const real Z_q_in_base_y = s->Z_q_in_base_y[k];
+        const real Z_q_in_base_z = s->Z_q_in_base_z[k];
+        const real total_upu_x = s->sum[0][k];
+        const real total_upu_y = s->sum[1][k];
+        const real total_upu_z = s->sum[2][k];
+        const real total_upu_x_2 = s->sum[3][k];
+        const real total_upu_y_2 = s->sum[4][k];
+        const real total_upu_z_2 = s->sum[5][k];
+        /* (M5) translational part of Z */
+        const real Z_t_x = Z_p_x + total_upu_x;
+        const real Z_t_y = Z_p_y + total_upu_y;
+        const real Z_t_z = Z_p_z + total_upu_z;
+        /* (M7) rotational part of Z */
+        const real Z_a_x = Z_q_in_base_x + total_upu_x_2;
+        const real Z_a_y = Z_q_in_base_y + total_upu_y_2;
+        const real Z_a_z = Z_q_in_base_z + total_upu_z_2;
+        Z[0*w + k] = Z_t_x;
+        Z[1*w + k] = Z_t_y;
+        Z[2*w + k] = Z_t_z;
+        Z[3*w + k] = Z_a_x;
+        Z[4*w + k] = Z_a_y;
+        Z[5*w + k] = Z_a_z;
+    }
+}
+
+INLINE void Z_run(const prepared *m, size_t w, const real *X, const real *V, real *Z, verdict *t)
+{
+    Z_values values, *const s = &values;
+    Z_results_upu results_upu;
+    Z_before(m, w, X, V, s, t);
+    if (w == 1) {  /* the legs side by side */
+        Z_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            Z_place_upu(w, &results_upu, leg, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_upu.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            Z_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
+            Z_place_upu(w, &results_upu, 0, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_upu.sum[n][k];
+            }
+        }
+    }
+    Z_after(w, s, Z);
+}
+
+INLINE void Z_any(const prepared *m, size_t w, const real *X, const real *V, real *Z, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], Z_of[6*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    Z_run(m, w, X, V, Z_of, t);
+    check(6, w, Z_of, t->overflow);
+    judge(t, w, code);
+    deliver(Z_of, 6, w, code, Z);
+}
+
+/* ---- H: 168 mul, 105 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
+} H_values;
+typedef struct {
+    real entry[6][8], singular[8];
+} H_results_upu;
+
+INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_values *s, size_t
+    states, size_t count, H_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
+        o->entry[3][k] = H_a_3_t;
+        o->entry[4][k] = H_a_3_t_2;
+        o->entry[5][k] = H_a_3_t_3;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_);
+    }
+}
+
+INLINE void H_place_upu(size_t w, const H_results_upu *o, size_t leg, size_t first, real *H,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        H[(9 + leg)*w + k] = o->entry[3][first + k];
+        H[(12 + leg)*w + k] = o->entry[4][first + k];
+        H[(15 + leg)*w + k] = o->entry[5][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void H_run(const prepared *m, size_t w, const real *X, real *H, verdict *t)
+{
+    H_values values, *const s = &values;
+    H_results_upu results_upu;
+    H_before(w, X, s, t);
+    if (w == 1) {  /* the legs side by side */
+        H_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            H_place_upu(w, &results_upu, leg, leg, H, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            H_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            H_place_upu(w, &results_upu, leg, 0, H, t);
+        }
+    }
+}
+
+INLINE void H_any(const prepared *m, size_t w, const real *X, real *H, int *code)
+{
+    real X_in[7*LANES], H_of[18*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    H_run(m, w, X, H_of, t);
+    check(18, w, H_of, t->overflow);
+    judge(t, w, code);
+    deliver(H_of, 18, w, code, H);
+}
+
+/* ---- Hk: 333 mul, 207 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
+} Hk_values;
+typedef struct {
+    real entry[6][8], singular[8];
+} Hk_results_upu;
+
+INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_values *s, size_t
+    states, size_t count, Hk_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
+        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
+        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+            end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x;
+        o->entry[0][k] = -n_c_t;
+        o->entry[1][k] = -n_c_t_2;
+        o->entry[2][k] = -n_c_t_3;
+        o->entry[3][k] = Hk_a_1_x;
+        o->entry[4][k] = Hk_a_1_y;
+        o->entry[5][k] = Hk_a_1_z;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_);
+    }
+}
+
+INLINE void Hk_place_upu(size_t w, const Hk_results_upu *o, size_t leg, size_t first, real *Hk,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        Hk[(leg)*w + k] = o->entry[0][first + k];
+        Hk[(3 + leg)*w + k] = o->entry[1][first + k];
+        Hk[(6 + leg)*w + k] = o->entry[2][first + k];
+        Hk[(9 + leg)*w + k] = o->entry[3][first + k];
+        Hk[(12 + leg)*w + k] = o->entry[4][first + k];
+        Hk[(15 + leg)*w + k] = o->entry[5][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void Hk_run(const prepared *m, size_t w, const real *X, real *Hk, verdict *t)
+{
+    Hk_values values, *const s = &values;
+    Hk_results_upu results_upu;
+    Hk_before(w, X, s, t);
+    if (w == 1) {  /* the legs side by side */
+        Hk_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            Hk_place_upu(w, &results_upu, leg, leg, Hk, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            Hk_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            Hk_place_upu(w, &results_upu, leg, 0, Hk, t);
+        }
+    }
+}
+
+INLINE void Hk_any(const prepared *m, size_t w, const real *X, real *Hk, int *code)
+{
+    real X_in[7*LANES], Hk_of[18*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    Hk_run(m, w, X, Hk_of, t);
+    check(18, w, Hk_of, t->overflow);
+    judge(t, w, code);
+    deliver(Hk_of, 18, w, code, Hk);
+}
+
+/* ---- constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
+} constraint_bias_values;
+typedef struct {
+    real entry[1][8], singular[8];
+} constraint_bias_results_upu;
+
+INLINE void constraint_bias_before(size_t w, const real *X, const real *V, constraint_bias_values
+    *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs, const
+    constraint_bias_values *s, size_t states, size_t count, constraint_bias_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        /* (upu-V18) rate at which the joints turn along moment direction 1 */
+        const real eta_1 = omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y) + omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y) + omega_z*(axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y);
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = (S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z +
+            eta_1*n_c_z)/w_1_t_3;
+        /* (upu-V22) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_z = 2*S_dot_tip_x*omega_1_t_2 + 2*root_2*zeta_2_y;
+        /* (upu-A7) remainder without the acceleration in: acceleration of the connection point left to
+           the joint accelerations */
+        const real rel_o_z = axis_z_upu_axes2_in_base_x*(S_dot_t_3*omega_y - S_dot_t_2*omega_z) +
+            axis_z_upu_axes2_in_base_y*(S_dot_t*omega_z - S_dot_t_3*omega_x) +
+            axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z;
+        /* (M11) part of the constraint's second derivative that does not hold the acceleration */
+        const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
+        o->entry[0][k] = gamma_c1;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void constraint_bias_place_upu(size_t w, const constraint_bias_results_upu *o, size_t leg,
+    size_t first, real *constraint_bias, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        constraint_bias[(leg)*w + k] = o->entry[0][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void constraint_bias_run(const prepared *m, size_t w, const real *X, const real *V, real
+    *constraint_bias, verdict *t)
+{
+    constraint_bias_values values, *const s = &values;
+    constraint_bias_results_upu results_upu;
+    constraint_bias_before(w, X, V, s, t);
+    if (w == 1) {  /* the legs side by side */
+        constraint_bias_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            constraint_bias_place_upu(w, &results_upu, leg, leg, constraint_bias, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            constraint_bias_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            constraint_bias_place_upu(w, &results_upu, leg, 0, constraint_bias, t);
+        }
+    }
+}
+
+INLINE void constraint_bias_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *bias, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], constraint_bias_of[3*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    constraint_bias_run(m, w, X, V, constraint_bias_of, t);
+    check(3, w, constraint_bias_of, t->overflow);
+    judge(t, w, code);
+    deliver(constraint_bias_of, 3, w, code, bias);
+}
+
+/* ---- required: 957 mul, 714 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
+        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
+        alpha_z[LANES], f_p_x[LANES], f_p_y[LANES], f_p_z[LANES], mu_p_in_base_x[LANES],
+        mu_p_in_base_y[LANES], mu_p_in_base_z[LANES], sum[6][LANES];
+} required_values;
+typedef struct {
+    real sum[6][8], entry[12][8], singular[8];
+} required_results_upu;
+
+INLINE void required_before(const prepared *m, size_t w, const real *X, const real *V, const real
+    *A, required_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
+        const real J_star_xx = m->J_star_xx;
+        const real J_star_xy = m->J_star_xy;
+        const real J_star_xz = m->J_star_xz;
+        const real J_star_yy = m->J_star_yy;
+        const real J_star_yz = m->J_star_yz;
+        const real J_star_zz = m->J_star_zz;
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        const real platform_mass = m->platform_mass;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        const real t_ddot_z = A_2;
+        const real alpha_x = A_3;
+        const real alpha_y = A_4;
+        const real alpha_z = A_5;
+        /* (L2) first moment about the platform origin */
+        const real h_star_in_base_x = R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z;
+        const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
+        const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
+        /* (P1) centripetal tensor of the platform */
+        const real W_p_t = omega_x*omega_x;
+        const real W_p_t_2 = omega_y*omega_y;
+        const real W_p_t_3 = omega_z*omega_z;
+        const real W_p_xy = omega_x*omega_y;
+        const real W_p_xz = omega_x*omega_z;
+        const real W_p_yz = omega_y*omega_z;
+        /* (M6) gyroscopic moment and moment of the weight of the platform */
+        const real omega_r0_x = R_xx*omega_x + R_yx*omega_y + R_zx*omega_z;
+        const real omega_r0_y = R_xy*omega_x + R_yy*omega_y + R_zy*omega_z;
+        const real omega_r0_z = R_xz*omega_x + R_yz*omega_y + R_zz*omega_z;
+        const real Z_q_t = J_star_xx*omega_r0_x + J_star_xy*omega_r0_y + J_star_xz*omega_r0_z;
+        const real Z_q_t_2 = J_star_xy*omega_r0_x + J_star_yy*omega_r0_y + J_star_yz*omega_r0_z;
+        const real Z_q_t_3 = J_star_xz*omega_r0_x + J_star_yz*omega_r0_y + J_star_zz*omega_r0_z;
+        /* (E1) acceleration of the platform origin, less gravity */
+        const real a_t_x = t_ddot_x - gravity_x;
+        const real a_t_y = t_ddot_y - gravity_y;
+        const real a_t_z = t_ddot_z - gravity_z;
+        /* (E2) inertia force of the platform less its weight */
+        const real f_p_x = a_t_x*platform_mass + h_star_in_base_y*(W_p_xy - alpha_z) +
+            h_star_in_base_z*(W_p_xz + alpha_y) - h_star_in_base_x*(W_p_t_2 + W_p_t_3);
+        const real f_p_y = a_t_y*platform_mass + h_star_in_base_x*(W_p_xy + alpha_z) +
+            h_star_in_base_z*(W_p_yz - alpha_x) - h_star_in_base_y*(W_p_t + W_p_t_3);
+        const real f_p_z = a_t_z*platform_mass + h_star_in_base_x*(W_p_xz - alpha_y) +
+            h_star_in_base_y*(W_p_yz + alpha_x) - h_star_in_base_z*(W_p_t + W_p_t_2);
+        /* (E1) acceleration of the platform origin, less gravity */
+        const real a_t_r0_x = R_xx*a_t_x + R_yx*a_t_y + R_zx*a_t_z;
+        const real a_t_r0_y = R_xy*a_t_x + R_yy*a_t_y + R_zy*a_t_z;
+        const real a_t_r0_z = R_xz*a_t_x + R_yz*a_t_y + R_zz*a_t_z;
+        /* (E3) inertia moment of the platform less that of its weight */
+        const real alpha_r0_x = R_xx*alpha_x + R_yx*alpha_y + R_zx*alpha_z;
+        const real alpha_r0_y = R_xy*alpha_x + R_yy*alpha_y + R_zy*alpha_z;
+        const real alpha_r0_z = R_xz*alpha_x + R_yz*alpha_y + R_zz*alpha_z;
+        const real mu_p_x = J_star_xx*alpha_r0_x + J_star_xy*alpha_r0_y + J_star_xz*alpha_r0_z +
+            Z_q_t_3*omega_r0_y + a_t_r0_z*h_star_y - Z_q_t_2*omega_r0_z - a_t_r0_y*h_star_z;
+        const real mu_p_y = J_star_xy*alpha_r0_x + J_star_yy*alpha_r0_y + J_star_yz*alpha_r0_z +
+            Z_q_t*omega_r0_z + a_t_r0_x*h_star_z - Z_q_t_3*omega_r0_x - a_t_r0_z*h_star_x;
+        const real mu_p_z = J_star_xz*alpha_r0_x + J_star_yz*alpha_r0_y + J_star_zz*alpha_r0_z +
+            Z_q_t_2*omega_r0_x + a_t_r0_y*h_star_x - Z_q_t*omega_r0_y - a_t_r0_x*h_star_y;
+        const real mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z;
+        const real mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z;
+        const real mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->t_ddot_z[k] = t_ddot_z;
+        s->alpha_x[k] = alpha_x;
+        s->alpha_y[k] = alpha_y;
+        s->alpha_z[k] = alpha_z;
+        s->f_p_x[k] = f_p_x;
+        s->f_p_y[k] = f_p_y;
+        s->f_p_z[k] = f_p_z;
+        s->mu_p_in_base_x[k] = mu_p_in_base_x;
+        s->mu_p_in_base_y[k] = mu_p_in_base_y;
+        s->mu_p_in_base_z[k] = mu_p_in_base_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const required_values
+    *s, size_t states, size_t count, int add, required_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real t_ddot_z = s->t_ddot_z[j];
+        const real alpha_x = s->alpha_x[j];
+        const real alpha_y = s->alpha_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real J_group_2_xy = m->J_group_2_xy[i];
+        const real J_group_2_xz = m->J_group_2_xz[i];
+        const real J_group_2_yz = m->J_group_2_yz[i];
+        const real Sigma_2_xx = m->Sigma_2_xx[i];
+        const real Sigma_2_yy = m->Sigma_2_yy[i];
+        const real Sigma_2_zz = m->Sigma_2_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real g_r0_z = m->g_r0_z[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_2_z = m->h_2_z[i];
+        const real h_3_x = m->h_3_x[i];
+        const real h_3_y = m->h_3_y[i];
+        const real h_3_z = m->h_3_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        /* (upu-V24) centripetal tensor of link 2 */
+        const real W_2_t = qd_1_t*qd_1_t;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
+        const real bias_t_2 = bias_t*qd_1_t;
+        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
+        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
+        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
+        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
+        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
+        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
+        /* (upu-V22) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
+            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real etad_1 = nu_1 - etad_1_t;
+        /* (upu-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
+        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
+        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
+        /* (upu-A3) acceleration of the connection point */
+        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
+        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
+        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-V24) centripetal tensor of link 2 */
+        const real W_2_t_2 = omega_1_t*omega_1_t;
+        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t_3 = bias_t*omega_1_t_2;
+        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
+        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
+        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
+            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
+        /* (upu-A11) acceleration of joint 1 */
+        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
+            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
+        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
+        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z);
+        /* (upu-A17) angular acceleration of link 1 */
+        const real alpha_1_t = qdd_1_t_3*s_2;
+        const real alpha_1_t_2 = c_2*qdd_1_t_3;
+        /* (upu-A21) angular acceleration of link 2 */
+        const real alpha_2_x = alpha_1_t - zeta_2_x;
+        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
+        /* (upu-A25) acceleration tensor of link 2 */
+        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
+        const real B_2_zx = zeta_2_y - alpha_2_y;
+        const real B_2_zy = alpha_2_x - zeta_2_x;
+        /* (upu-N3) acceleration of the reference point of link 3, less gravity */
+        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
+            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
+        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
+        const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
+        /* (upu-N11) inertia force of link 3 less its weight */
+        const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
+            h_3_x*(W_2_t + W_2_t_3);
+        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
+            alpha_1_t*h_3_y;
+        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
+            W_2_t_3);
+        /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
+        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
+            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
+            acc_3_y*h_3_y - acc_3_z*h_3_z;
+        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
+            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
+            acc_3_z*h_3_x - g_r3_x*h_2_y;
+        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
+            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
+            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
+        /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
+           left out */
+        const real N_2_y = mu_2_y - f_3_z*root_2;
+        const real N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2;
+        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real G_t = f_3_y + inv_root_2*mu_2_z;
+        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
+        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z;
+        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
+            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
+        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
+            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
+        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
+            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
+        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real G_m_x = G_t_3*end_p1_r3_y;
+        const real G_m_y = G_t_3*end_p1_r3_x;
+        /* (E5) moment that actuators and external wrench must give */
+        const real R_a_t = G_m_x*axis_x_upu_axes2_x + c_in_base_z*q_in_base_y -
+            G_m_y*axis_y_upu_axes2_in_base_x - c_in_base_y*q_in_base_z;
+        const real R_a_t_2 = G_m_x*axis_x_upu_axes2_y + c_in_base_x*q_in_base_z -
+            G_m_y*axis_y_upu_axes2_in_base_y - c_in_base_z*q_in_base_x;
+        const real R_a_t_3 = G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x -
+            G_m_y*axis_y_upu_axes2_in_base_z - c_in_base_x*q_in_base_y;
+        o->sum[0][k] = add ? o->sum[0][k] + c_in_base_x : c_in_base_x;  /* total_upu_x */
+        o->sum[1][k] = add ? o->sum[1][k] + c_in_base_y : c_in_base_y;  /* total_upu_y */
+        o->sum[2][k] = add ? o->sum[2][k] + c_in_base_z : c_in_base_z;  /* total_upu_z */
+        o->sum[3][k] = add ? o->sum[3][k] + R_a_t : R_a_t;  /* total_upu_x_2 */
+        o->sum[4][k] = add ? o->sum[4][k] + R_a_t_2 : R_a_t_2;  /* total_upu_y_2 */
+        o->sum[5][k] = add ? o->sum[5][k] + R_a_t_3 : R_a_t_3;  /* total_upu_z_2 */
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
+        o->entry[3][k] = H_a_3_t;
+        o->entry[4][k] = H_a_3_t_2;
+        o->entry[5][k] = H_a_3_t_3;
+        o->entry[6][k] = -n_c_t;
+        o->entry[7][k] = -n_c_t_2;
+        o->entry[8][k] = -n_c_t_3;
+        o->entry[9][k] = Hk_a_1_x;
+        o->entry[10][k] = Hk_a_1_y;
+        o->entry[11][k] = Hk_a_1_z;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void required_place_upu(size_t w, const required_results_upu *o, size_t leg, size_t first,
+    real *H, real *Hk, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        H[(9 + leg)*w + k] = o->entry[3][first + k];
+        H[(12 + leg)*w + k] = o->entry[4][first + k];
+        H[(15 + leg)*w + k] = o->entry[5][first + k];
+        Hk[(leg)*w + k] = o->entry[6][first + k];
+        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
+        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
+        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
+        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
+        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void required_after(size_t w, const required_values *s, real *required)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real f_p_x = s->f_p_x[k];
+        const real f_p_y = s->f_p_y[k];
+        const real f_p_z = s->f_p_z[k];
+        const real mu_p_in_base_x = s->mu_p_in_base_x[k];
+        const real mu_p_in_base_y = s->mu_p_in_base_y[k];
+        const real mu_p_in_base_z = s->mu_p_in_base_z[k];
+        const real total_upu_x = s->sum[0][k];
+        const real total_upu_y = s->sum[1][k];
+        const real total_upu_z = s->sum[2][k];
+        const real total_upu_x_2 = s->sum[3][k];
+        const real total_upu_y_2 = s->sum[4][k];
+        const real total_upu_z_2 = s->sum[5][k];
+        /* (E4) force that actuators and external wrench must give */
+        const real R_t_x = f_p_x - total_upu_x;
+        const real R_t_y = f_p_y - total_upu_y;
+        const real R_t_z = f_p_z - total_upu_z;
+        /* (E5) moment that actuators and external wrench must give */
+        const real R_a_x = mu_p_in_base_x - total_upu_x_2;
+        const real R_a_y = mu_p_in_base_y - total_upu_y_2;
+        const real R_a_z = mu_p_in_base_z - total_upu_z_2;
+        required[0*w + k] = R_t_x;
+        required[1*w + k] = R_t_y;
+        required[2*w + k] = R_t_z;
+        required[3*w + k] = R_a_x;
+        required[4*w + k] = R_a_y;
+        required[5*w + k] = R_a_z;
+    }
+}
+
+INLINE void required_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+    real *required, real *H, real *Hk, verdict *t)
+{
+    required_values values, *const s = &values;
+    required_results_upu results_upu;
+    required_before(m, w, X, V, A, s, t);
+    if (w == 1) {  /* the legs side by side */
+        required_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            required_place_upu(w, &results_upu, leg, leg, H, Hk, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_upu.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            required_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
+            required_place_upu(w, &results_upu, leg, 0, H, Hk, t);
+        }
+        for (size_t n = 0; n < 6; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_upu.sum[n][k];
+            }
+        }
+    }
+    required_after(w, s, required);
+}
+
+/* ---- inverse_kinematics: 81 mul, 60 add, 6 div, 6 sqrt, 6 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
+} inverse_kinematics_values;
+typedef struct {
+    real entry[3][8], singular[8];
+} inverse_kinematics_results_upu;
+
+INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematics_values *s,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t leg, size_t legs, const
+    inverse_kinematics_values *s, size_t states, size_t count, inverse_kinematics_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z - upu_base_point_x;
+        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z - upu_base_point_y;
+        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        /* (upu-K8) displacement of joint 1 */
+        const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
+        /* (upu-K17) displacement of joint 2 */
+        const real q_2 = angle(-inv_root_2*xi_1_t, inv_root_2*root_1);
+        o->entry[0][k] = q_1;
+        o->entry[1][k] = q_2;
+        o->entry[2][k] = root_2;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+    }
+}
+
+INLINE void inverse_kinematics_place_upu(size_t w, const inverse_kinematics_results_upu *o, size_t
+    leg, size_t first, real *q, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        q[(3*leg)*w + k] = o->entry[0][first + k];
+        q[(1 + 3*leg)*w + k] = o->entry[1][first + k];
+        q[(2 + 3*leg)*w + k] = o->entry[2][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void inverse_kinematics_run(const prepared *m, size_t w, const real *X, real *q, verdict
+    *t)
+{
+    inverse_kinematics_values values, *const s = &values;
+    inverse_kinematics_results_upu results_upu;
+    inverse_kinematics_before(w, X, s, t);
+    if (w == 1) {  /* the legs side by side */
+        inverse_kinematics_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            inverse_kinematics_place_upu(w, &results_upu, leg, leg, q, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            inverse_kinematics_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            inverse_kinematics_place_upu(w, &results_upu, leg, 0, q, t);
+        }
+    }
+}
+
+INLINE void inverse_kinematics_any(const prepared *m, size_t w, const real *X, real *q, int *code)
+{
+    real X_in[7*LANES], q_of[9*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    inverse_kinematics_run(m, w, X, q_of, t);
+    check(9, w, q_of, t->overflow);
+    judge(t, w, code);
+    deliver(q_of, 9, w, code, q);
+}
+
+/* ---- joint_rates: 366 mul, 237 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES];
+} joint_rates_values;
+typedef struct {
+    real entry[3][8], singular[8];
+} joint_rates_results_upu;
+
+INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rates_values *s,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, const
+    joint_rates_values *s, size_t states, size_t count, joint_rates_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_z = t_dot_z + omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        const real qd_1_t_2 = S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z) - end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z));
+        const real qd_1_t_3 = qd_1_t_2/w_1_t_3;
+        o->entry[0][k] = qd_1_t_3;
+        o->entry[1][k] = qd_1_t;
+        o->entry[2][k] = S_dot_tip_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void joint_rates_place_upu(size_t w, const joint_rates_results_upu *o, size_t leg, size_t
+    first, real *qd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qd[(3*leg)*w + k] = o->entry[0][first + k];
+        qd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
+        qd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_rates_run(const prepared *m, size_t w, const real *X, const real *V, real *qd,
+    verdict *t)
+{
+    joint_rates_values values, *const s = &values;
+    joint_rates_results_upu results_upu;
+    joint_rates_before(w, X, V, s, t);
+    if (w == 1) {  /* the legs side by side */
+        joint_rates_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_rates_place_upu(w, &results_upu, leg, leg, qd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_rates_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            joint_rates_place_upu(w, &results_upu, leg, 0, qd, t);
+        }
+    }
+}
+
+INLINE void joint_rates_any(const prepared *m, size_t w, const real *X, const real *V, real
+    *rates, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], qd_of[9*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    joint_rates_run(m, w, X, V, qd_of, t);
+    check(9, w, qd_of, t->overflow);
+    judge(t, w, code);
+    deliver(qd_of, 9, w, code, rates);
+}
+
+/* ---- joint_accelerations: 558 mul, 375 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
+        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
+        alpha_z[LANES];
+} joint_accelerations_values;
+typedef struct {
+    real entry[3][8], singular[8];
+} joint_accelerations_results_upu;
+
+INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, const real *A,
+    joint_accelerations_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        const real t_ddot_z = A_2;
+        const real alpha_x = A_3;
+        const real alpha_y = A_4;
+        const real alpha_z = A_5;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->t_ddot_z[k] = t_ddot_z;
+        s->alpha_x[k] = alpha_x;
+        s->alpha_y[k] = alpha_y;
+        s->alpha_z[k] = alpha_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t legs, const
+    joint_accelerations_values *s, size_t states, size_t count, joint_accelerations_results_upu
+    *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real t_ddot_z = s->t_ddot_z[j];
+        const real alpha_x = s->alpha_x[j];
+        const real alpha_y = s->alpha_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
+        /* (upu-V22) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*omega_1_t_2*qd_1_t - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
+            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real etad_1 = nu_1 - etad_1_t;
+        /* (upu-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
+        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
+        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
+        /* (upu-A3) acceleration of the connection point */
+        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
+        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
+        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_z = bias_t*omega_1_t_2 + 2*root_2*zeta_2_y;
+        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
+        const real rel_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
+            S_ddot_z*axis_x_upu_axes2_z + root_2*(omega_1_t_2*omega_1_t_2 + qd_1_t*qd_1_t);
+        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
+            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
+        /* (upu-A11) acceleration of joint 1 */
+        const real qdd_1_t = inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x +
+            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z -
+            bias_t*qd_1_t) + omega_1_t*omega_1_t_2;
+        const real qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c_z);
+        o->entry[0][k] = qdd_1_t_2;
+        o->entry[1][k] = qdd_1_t;
+        o->entry[2][k] = rel_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void joint_accelerations_place_upu(size_t w, const joint_accelerations_results_upu *o,
+    size_t leg, size_t first, real *qdd, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        qdd[(3*leg)*w + k] = o->entry[0][first + k];
+        qdd[(1 + 3*leg)*w + k] = o->entry[1][first + k];
+        qdd[(2 + 3*leg)*w + k] = o->entry[2][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void joint_accelerations_run(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *qdd, verdict *t)
+{
+    joint_accelerations_values values, *const s = &values;
+    joint_accelerations_results_upu results_upu;
+    joint_accelerations_before(w, X, V, A, s, t);
+    if (w == 1) {  /* the legs side by side */
+        joint_accelerations_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_accelerations_place_upu(w, &results_upu, leg, leg, qdd, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            joint_accelerations_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            joint_accelerations_place_upu(w, &results_upu, leg, 0, qdd, t);
+        }
+    }
+}
+
+INLINE void joint_accelerations_any(const prepared *m, size_t w, const real *X, const real *V,
+    const real *A, real *accelerations, int *code)
+{
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], qdd_of[9*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    A = take(6, w, A, A_in, t);
+    joint_accelerations_run(m, w, X, V, A, qdd_of, t);
+    check(9, w, qdd_of, t->overflow);
+    judge(t, w, code);
+    deliver(qdd_of, 9, w, code, accelerations);
+}
+
+/* ---- constraints: 138 mul, 102 add, 3 div, 3 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES];
+} constraints_values;
+typedef struct {
+    real entry[1][8], singular[8];
+} constraints_results_upu;
+
+INLINE void constraints_before(size_t w, const real *X, constraints_values *s, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, const
+    constraints_values *s, size_t states, size_t count, constraints_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real branch_1 = m->branch_1[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z - upu_base_point_x;
+        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z - upu_base_point_y;
+        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1;
+        o->entry[0][k] = -end_p1_r1_x;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+    }
+}
+
+INLINE void constraints_place_upu(size_t w, const constraints_results_upu *o, size_t leg, size_t
+    first, real *constraints, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        constraints[(leg)*w + k] = o->entry[0][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void constraints_run(const prepared *m, size_t w, const real *X, real *constraints, verdict
+    *t)
+{
+    constraints_values values, *const s = &values;
+    constraints_results_upu results_upu;
+    constraints_before(w, X, s, t);
+    if (w == 1) {  /* the legs side by side */
+        constraints_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            constraints_place_upu(w, &results_upu, leg, leg, constraints, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            constraints_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            constraints_place_upu(w, &results_upu, leg, 0, constraints, t);
+        }
+    }
+}
+
+INLINE void constraints_any(const prepared *m, size_t w, const real *X, real *residual, int *code)
+{
+    real X_in[7*LANES], constraints_of[3*LANES];
+    verdict values, *const t = &values;
+    start(w, t);
+    X = take(7, w, X, X_in, t);
+    constraints_run(m, w, X, constraints_of, t);
+    check(3, w, constraints_of, t->overflow);
+    judge(t, w, code);
+    deliver(constraints_of, 3, w, code, residual);
+}
+
+/* ---- legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
+        t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES], omega_y[LANES], omega_z[LANES],
+        t_ddot_x[LANES], t_ddot_y[LANES], t_ddot_z[LANES], alpha_x[LANES], alpha_y[LANES],
+        alpha_z[LANES];
+} legs_values;
+typedef struct {
+    real entry[15][8], singular[8];
+} legs_results_upu;
+
+INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, legs_values *s,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real V_0 = V[0*w + k];
+        const real V_1 = V[1*w + k];
+        const real V_2 = V[2*w + k];
+        const real V_3 = V[3*w + k];
+        const real V_4 = V[4*w + k];
+        const real V_5 = V[5*w + k];
+        const real A_0 = A[0*w + k];
+        const real A_1 = A[1*w + k];
+        const real A_2 = A[2*w + k];
+        const real A_3 = A[3*w + k];
+        const real A_4 = A[4*w + k];
+        const real A_5 = A[5*w + k];
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* V: named entries */
+        const real t_dot_x = V_0;
+        const real t_dot_y = V_1;
+        const real t_dot_z = V_2;
+        const real omega_x = V_3;
+        const real omega_y = V_4;
+        const real omega_z = V_5;
+        /* A: named entries */
+        const real t_ddot_x = A_0;
+        const real t_ddot_y = A_1;
+        const real t_ddot_z = A_2;
+        const real alpha_x = A_3;
+        const real alpha_y = A_4;
+        const real alpha_z = A_5;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->t_dot_x[k] = t_dot_x;
+        s->t_dot_y[k] = t_dot_y;
+        s->t_dot_z[k] = t_dot_z;
+        s->omega_x[k] = omega_x;
+        s->omega_y[k] = omega_y;
+        s->omega_z[k] = omega_z;
+        s->t_ddot_x[k] = t_ddot_x;
+        s->t_ddot_y[k] = t_ddot_y;
+        s->t_ddot_z[k] = t_ddot_z;
+        s->alpha_x[k] = alpha_x;
+        s->alpha_y[k] = alpha_y;
+        s->alpha_z[k] = alpha_z;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs_values *s, size_t
+    states, size_t count, legs_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real t_dot_x = s->t_dot_x[j];
+        const real t_dot_y = s->t_dot_y[j];
+        const real t_dot_z = s->t_dot_z[j];
+        const real omega_x = s->omega_x[j];
+        const real omega_y = s->omega_y[j];
+        const real omega_z = s->omega_z[j];
+        const real t_ddot_x = s->t_ddot_x[j];
+        const real t_ddot_y = s->t_ddot_y[j];
+        const real t_ddot_z = s->t_ddot_z[j];
+        const real alpha_x = s->alpha_x[j];
+        const real alpha_y = s->alpha_y[j];
+        const real alpha_z = s->alpha_z[j];
+        const real J_group_2_xy = m->J_group_2_xy[i];
+        const real J_group_2_xz = m->J_group_2_xz[i];
+        const real J_group_2_yz = m->J_group_2_yz[i];
+        const real Sigma_2_xx = m->Sigma_2_xx[i];
+        const real Sigma_2_yy = m->Sigma_2_yy[i];
+        const real Sigma_2_zz = m->Sigma_2_zz[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real g_r0_z = m->g_r0_z[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_2_z = m->h_2_z[i];
+        const real h_3_x = m->h_3_x[i];
+        const real h_3_y = m->h_3_y[i];
+        const real h_3_z = m->h_3_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        const real volume_c_t = m->volume_c_t[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t_2 = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        const real inv_w_1_t_25 = 1/w_1_t_3;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x -
+            axis_x_upu_axes2_x*end_p1_r3_y;
+        const real n_m1_in_base_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x -
+            axis_x_upu_axes2_y*end_p1_r3_y;
+        const real n_m1_in_base_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x -
+            axis_x_upu_axes2_z*end_p1_r3_y;
+        /* (upu-V1) velocity of the connection point */
+        const real S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y;
+        const real S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z;
+        const real S_dot_t_3 = omega_x*q_in_base_y - omega_y*q_in_base_x;
+        const real S_dot_x = S_dot_t + t_dot_x;
+        const real S_dot_y = S_dot_t_2 + t_dot_y;
+        const real S_dot_z = S_dot_t_3 + t_dot_z;
+        const real S_dot_tip_x = S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y +
+            S_dot_z*axis_x_upu_axes2_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t = inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x +
+            S_dot_y*axis_y_upu_axes2_in_base_y + S_dot_z*axis_y_upu_axes2_in_base_z);
+        /* (upu-A8) rate of moment direction 1 */
+        const real omega_tip_x = axis_x_upu_axes2_x*omega_x + axis_x_upu_axes2_y*omega_y +
+            axis_x_upu_axes2_z*omega_z;
+        const real omega_tip_y = axis_y_upu_axes2_in_base_x*omega_x +
+            axis_y_upu_axes2_in_base_y*omega_y + axis_y_upu_axes2_in_base_z*omega_z;
+        const real omega_tip_z = axis_z_upu_axes2_in_base_x*omega_x +
+            axis_z_upu_axes2_in_base_y*omega_y + axis_z_upu_axes2_in_base_z*omega_z;
+        /* (upu-V24) centripetal tensor of link 2 */
+        const real W_2_t = qd_1_t*qd_1_t;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t = 2*S_dot_tip_x;
+        const real bias_t_2 = bias_t*qd_1_t;
+        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real g_r1_x = g_r0_y*s_1 - c_1*g_r0_x;
+        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
+        const real g_r3_x = g_r0_z*s_2 - c_2*g_r1_y;
+        const real g_r3_y = -c_2*g_r0_z - g_r1_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
+        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
+        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (upu-V19) rate of joint 1 */
+        const real qd_1_t_2 = inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x +
+            S_dot_y*axis_z_upu_axes2_in_base_y + S_dot_z*axis_z_upu_axes2_in_base_z -
+            n_c_z*(end_p1_r3_y*omega_tip_x - end_p1_r3_x*omega_tip_y));
+        /* (upu-V22) angular velocity of link 1 */
+        const real omega_1_t = qd_1_t_2*s_2;
+        const real omega_1_t_2 = c_2*qd_1_t_2;
+        /* (upu-A8) rate of moment direction 1 */
+        const real nd_m1_x = end_p1_r1_x*omega_tip_x - end_p1_r1_x*omega_1_t -
+            end_p1_r3_x*omega_tip_z;
+        const real nd_m1_y = end_p1_r1_x*omega_1_t_2 + end_p1_r1_x*omega_tip_y -
+            end_p1_r3_y*omega_tip_z;
+        /* (upu-A4) angular acceleration of link 2 from the turning of axis 2 */
+        const real zeta_2_x = omega_1_t_2*qd_1_t;
+        const real zeta_2_y = omega_1_t*qd_1_t;
+        /* (upu-A9) bias of the angular acceleration along moment direction 1 */
+        const real nu_1_t = end_p1_r3_y*zeta_2_x - end_p1_r3_x*zeta_2_y;
+        const real nu_1_t_2 = nd_m1_x*(omega_1_t - omega_tip_x) + (omega_tip_z -
+            qd_1_t)*(end_p1_r3_y*omega_1_t_2 - end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 +
+            omega_tip_y);
+        const real nu_1 = -nu_1_t - nu_1_t_2;
+        /* (upu-A10) acceleration with which the joints turn along moment direction 1 */
+        const real etad_1_t = end_p1_r3_y*(alpha_x*axis_x_upu_axes2_x + alpha_y*axis_x_upu_axes2_y
+            + alpha_z*axis_x_upu_axes2_z) - end_p1_r3_x*(alpha_x*axis_y_upu_axes2_in_base_x +
+            alpha_y*axis_y_upu_axes2_in_base_y + alpha_z*axis_y_upu_axes2_in_base_z);
+        const real etad_1 = nu_1 - etad_1_t;
+        /* (upu-A2) acceleration of the connection point without its centripetal part */
+        const real a_p_x = t_ddot_x + alpha_y*q_in_base_z - alpha_z*q_in_base_y;
+        const real a_p_y = t_ddot_y + alpha_z*q_in_base_x - alpha_x*q_in_base_z;
+        const real a_p_z = t_ddot_z + alpha_x*q_in_base_y - alpha_y*q_in_base_x;
+        /* (upu-A3) acceleration of the connection point */
+        const real S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z;
+        const real S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x;
+        const real S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y;
+        /* (upu-V24) centripetal tensor of link 2 */
+        const real W_2_t_2 = omega_1_t*omega_1_t;
+        const real W_2_t_3 = omega_1_t_2*omega_1_t_2;
+        const real W_2_xy = omega_1_t*omega_1_t_2;
+        /* (upu-A5) acceleration of the connection point at zero joint accelerations */
+        const real bias_t_3 = bias_t*omega_1_t_2;
+        const real bias_z = bias_t_3 + 2*root_2*zeta_2_y;
+        /* (upu-A6) acceleration of the connection point left to the joint accelerations */
+        const real rel_z = S_ddot_x*axis_z_upu_axes2_in_base_x +
+            S_ddot_y*axis_z_upu_axes2_in_base_y + S_ddot_z*axis_z_upu_axes2_in_base_z - bias_z;
+        /* (upu-A11) acceleration of joint 1 */
+        const real qdd_1_t = S_ddot_x*axis_y_upu_axes2_in_base_x +
+            S_ddot_y*axis_y_upu_axes2_in_base_y + S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2;
+        const real qdd_1_t_2 = inv_root_2*qdd_1_t;
+        const real qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z);
+        /* (upu-A17) angular acceleration of link 1 */
+        const real alpha_1_t = qdd_1_t_3*s_2;
+        const real alpha_1_t_2 = c_2*qdd_1_t_3;
+        /* (upu-A21) angular acceleration of link 2 */
+        const real alpha_2_x = alpha_1_t - zeta_2_x;
+        const real alpha_2_y = -alpha_1_t_2 - zeta_2_y;
+        /* (upu-A25) acceleration tensor of link 2 */
+        const real B_2_xy = -2*W_2_xy - qdd_1_t_2;
+        const real B_2_zx = zeta_2_y - alpha_2_y;
+        const real B_2_zy = alpha_2_x - zeta_2_x;
+        /* (upu-N3) acceleration of the reference point of link 3, less gravity */
+        const real acc_3_x = S_ddot_x*axis_x_upu_axes2_x + S_ddot_y*axis_x_upu_axes2_y +
+            S_ddot_z*axis_x_upu_axes2_z - g_r3_x;
+        const real acc_3_y = bias_t_2 + qdd_1_t - g_r3_y;
+        const real acc_3_z = bias_t_3 + B_2_zx*root_2 - g_r1_x;
+        /* (upu-N11) inertia force of link 3 less its weight */
+        const real f_3_x = acc_3_x*upu_link3_mass - B_2_xy*h_3_z - alpha_1_t_2*h_3_y -
+            h_3_x*(W_2_t + W_2_t_3);
+        const real f_3_y = acc_3_y*upu_link3_mass + h_3_x*qdd_1_t_2 + h_3_z*(W_2_t + W_2_t_2) -
+            alpha_1_t*h_3_y;
+        const real f_3_z = B_2_zx*h_3_x + acc_3_z*upu_link3_mass - B_2_zy*h_3_z - h_3_y*(W_2_t_2 +
+            W_2_t_3);
+        /* (upu-N18) inertia moment of the links that turn with link 2, about their reference points */
+        const real mu_2_x = B_2_zy*Sigma_2_yy + J_group_2_xz*qdd_1_t_2 + Sigma_2_zz*alpha_1_t +
+            g_r1_x*h_2_z + g_r3_y*h_2_y - B_2_zx*J_group_2_xy - J_group_2_yz*(W_2_t - W_2_t_3) -
+            acc_3_y*h_3_y - acc_3_z*h_3_z;
+        const real mu_2_y = B_2_zy*J_group_2_xy + J_group_2_xz*(W_2_t - W_2_t_2) + acc_3_x*h_3_y +
+            g_r1_x*h_2_x - B_2_xy*J_group_2_yz - B_2_zx*Sigma_2_xx - Sigma_2_zz*alpha_1_t_2 -
+            acc_3_z*h_3_x - g_r3_x*h_2_y;
+        const real mu_2_z = J_group_2_xy*(W_2_t_2 - W_2_t_3) + J_group_2_xz*alpha_1_t +
+            Sigma_2_xx*qdd_1_t_2 + acc_3_x*h_3_z + acc_3_y*h_3_x - B_2_xy*Sigma_2_yy -
+            J_group_2_yz*alpha_1_t_2 - g_r3_x*h_2_z - g_r3_y*h_2_x;
+        /* (upu-N22) moment about joint 2 of the links from 2 outwards, the force at the connection point
+           left out */
+        const real N_2_y = mu_2_y - f_3_z*root_2;
+        const real N_2_r0_y = mu_2_x*s_2 - N_2_y*c_2;
+        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real G_t = f_3_y + inv_root_2*mu_2_z;
+        const real G_t_2 = N_2_r0_y*inv_w_1_t_25;
+        const real G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z;
+        /* (upu-N50) leg force on the platform without actuation and without the mass at the connection
+           point */
+        const real c_in_base_x = -G_t*axis_y_upu_axes2_in_base_x -
+            G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x;
+        const real c_in_base_y = -G_t*axis_y_upu_axes2_in_base_y -
+            G_t_2*axis_z_upu_axes2_in_base_y - axis_x_upu_axes2_y*f_3_x;
+        const real c_in_base_z = -G_t*axis_y_upu_axes2_in_base_z -
+            G_t_2*axis_z_upu_axes2_in_base_z - axis_x_upu_axes2_z*f_3_x;
+        /* (upu-N46) moment at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real G_m_x = G_t_3*end_p1_r3_y;
+        const real G_m_y = G_t_3*end_p1_r3_x;
+        /* (upu-N55) moment of the leg on the platform without actuation */
+        const real c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x;
+        const real c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y;
+        const real c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z;
+        o->entry[0][k] = c_in_base_x;
+        o->entry[1][k] = c_in_base_y;
+        o->entry[2][k] = c_in_base_z;
+        o->entry[3][k] = c_m_in_base_x;
+        o->entry[4][k] = c_m_in_base_y;
+        o->entry[5][k] = c_m_in_base_z;
+        o->entry[6][k] = axis_x_upu_axes2_x;
+        o->entry[7][k] = axis_x_upu_axes2_y;
+        o->entry[8][k] = axis_x_upu_axes2_z;
+        o->entry[9][k] = -n_c_t;
+        o->entry[10][k] = -n_c_t_2;
+        o->entry[11][k] = -n_c_t_3;
+        o->entry[12][k] = n_m1_in_base_x;
+        o->entry[13][k] = n_m1_in_base_y;
+        o->entry[14][k] = n_m1_in_base_z;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+    }
+}
+
+INLINE void legs_place_upu(size_t w, const legs_results_upu *o, size_t leg, size_t first, real
+    *leg_force, real *drive, real *constraint_direction, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        leg_force[(6*leg)*w + k] = o->entry[0][first + k];
+        leg_force[(1 + 6*leg)*w + k] = o->entry[1][first + k];
+        leg_force[(2 + 6*leg)*w + k] = o->entry[2][first + k];
+        leg_force[(3 + 6*leg)*w + k] = o->entry[3][first + k];
+        leg_force[(4 + 6*leg)*w + k] = o->entry[4][first + k];
+        leg_force[(5 + 6*leg)*w + k] = o->entry[5][first + k];
+        drive[(6*leg)*w + k] = o->entry[6][first + k];
+        drive[(1 + 6*leg)*w + k] = o->entry[7][first + k];
+        drive[(2 + 6*leg)*w + k] = o->entry[8][first + k];
+        constraint_direction[(6*leg)*w + k] = o->entry[9][first + k];
+        constraint_direction[(1 + 6*leg)*w + k] = o->entry[10][first + k];
+        constraint_direction[(2 + 6*leg)*w + k] = o->entry[11][first + k];
+        constraint_direction[(3 + 6*leg)*w + k] = o->entry[12][first + k];
+        constraint_direction[(4 + 6*leg)*w + k] = o->entry[13][first + k];
+        constraint_direction[(5 + 6*leg)*w + k] = o->entry[14][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void legs_run(const prepared *m, size_t w, const real *X, const real *V, const real *A,
+    real *leg_force, real *drive, real *constraint_direction, verdict *t)
+{
+    legs_values values, *const s = &values;
+    legs_results_upu results_upu;
+    clear(drive, 18*w);
+    legs_before(w, X, V, A, s, t);
+    if (w == 1) {  /* the legs side by side */
+        legs_legs_upu(m, 0, 1, s, 0, 3, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            legs_place_upu(w, &results_upu, leg, leg, leg_force, drive, constraint_direction, t);
+        }
+    } else {  /* the states side by side */
+        for (size_t leg = 0; leg < 3; ++leg) {
+            legs_legs_upu(m, leg, 0, s, 1, w, &results_upu);
+            legs_place_upu(w, &results_upu, leg, 0, leg_force, drive, constraint_direction, t);
+        }
+    }
+}
+
+/* ---- potential: 171 mul, 135 add, 6 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], potential_t[LANES],
+        sum[1][LANES];
+} potential_values;
+typedef struct {
+    real sum[1][8], singular[8];
+} potential_results_upu;
+
+INLINE void potential_before(const prepared *m, size_t w, const real *X, potential_values *s,
+    verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real gravity_x = m->gravity_x;
+        const real gravity_y = m->gravity_y;
+        const real gravity_z = m->gravity_z;
+        const real h_star_x = m->h_star_x;
+        const real h_star_y = m->h_star_y;
+        const real h_star_z = m->h_star_z;
+        const real platform_mass = m->platform_mass;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        /* (V1) potential energy */
+        const real potential_t = gravity_x*(R_xx*h_star_x + R_xy*h_star_y + R_xz*h_star_z +
+            platform_mass*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z +
+            platform_mass*t_y) + gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z +
+            platform_mass*t_z);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        s->potential_t[k] = potential_t;
+        t->invalid[k] += UNLESS(quaternion_norm2 > 0);
+    }
+}
+
+INLINE void potential_legs_upu(const prepared *m, size_t leg, size_t legs, const potential_values
+    *s, size_t states, size_t count, int add, potential_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_r0_x = m->b_r0_x[i];
+        const real b_r0_y = m->b_r0_y[i];
+        const real b_r0_z = m->b_r0_z[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real g_r0_x = m->g_r0_x[i];
+        const real g_r0_y = m->g_r0_y[i];
+        const real g_r0_z = m->g_r0_z[i];
+        const real h_2_x = m->h_2_x[i];
+        const real h_2_y = m->h_2_y[i];
+        const real h_2_z = m->h_2_z[i];
+        const real h_3_x = m->h_3_x[i];
+        const real h_3_y = m->h_3_y[i];
+        const real h_3_z = m->h_3_z[i];
+        const real size_t_3 = m->size_t_3[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_link2_mass = m->upu_link2_mass[i];
+        const real upu_link3_mass = m->upu_link3_mass[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real S_x = t_x + R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z - upu_base_point_x;
+        const real S_y = t_y + R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z - upu_base_point_y;
+        const real S_z = t_z + R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-N6) remainder without the acceleration in: acceleration of the reference point of link 3,
+           less gravity */
+        const real g_r1_y = -c_1*g_r0_y - g_r0_x*s_1;
+        /* (V1) potential energy */
+        const real b_r1_x = b_r0_y*s_1 - b_r0_x*c_1;
+        const real b_r1_y = -b_r0_x*s_1 - b_r0_y*c_1;
+        const real b_r3_x = b_r0_z*s_2 - b_r1_y*c_2;
+        const real b_r3_y = -b_r0_z*c_2 - b_r1_y*s_2;
+        const real potential_t_2 = (g_r0_y*s_1 - c_1*g_r0_x)*(h_2_y + h_3_y +
+            b_r1_x*upu_link2_mass + b_r1_x*upu_link3_mass) + (g_r0_z*s_2 - c_2*g_r1_y)*(h_2_x +
+            h_3_x + b_r3_x*upu_link2_mass + upu_link3_mass*(b_r3_x + root_2)) - (-c_2*g_r0_z -
+            g_r1_y*s_2)*(h_2_z + h_3_z - b_r3_y*upu_link2_mass - b_r3_y*upu_link3_mass);
+        o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_upu */
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+    }
+}
+
+INLINE void potential_place_upu(size_t w, const potential_results_upu *o, size_t first, verdict
+    *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void potential_after(size_t w, const potential_values *s, real *potential)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real potential_t = s->potential_t[k];
+        const real total_upu = s->sum[0][k];
+        /* (V1) potential energy */
+        const real potential_ = -potential_t - total_upu;
+        potential[0*w + k] = potential_;
+    }
+}
+
+INLINE void potential_run(const prepared *m, size_t w, const real *X, real *potential, verdict *t)
+{
+    potential_values values, *const s = &values;
+    potential_results_upu results_upu;
+    potential_before(m, w, X, s, t);
+    if (w == 1) {  /* the legs side by side */
+        potential_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            potential_place_upu(w, &results_upu, leg, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_upu.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            potential_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
+            potential_place_upu(w, &results_upu, 0, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_upu.sum[n][k];
+            }
+        }
+    }
+    potential_after(w, s, potential);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -5852,29 +5910,29 @@ INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, con
     static const size_t rows[] = {0, 1, 2, 3, 4, 5};  /* on which drives act */
     enum { N = 6, PADDED = 8 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[7*LANES], V_in[6*LANES], A_in[6*LANES], wrench_in[6*LANES];
     real force[6*LANES], H[18*LANES], a[N*PADDED*LANES], x[N*LANES];
     real Hk[18*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(A, 6, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    A = take(6, w, A, A_in, t);
     required_run(m, w, X, V, A, force, H, Hk, t);
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, -1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), -1, w, force);
     }
     for (size_t i = 0; i < N; ++i) {
         for (size_t j = 0; j < stride; ++j) {
             for (size_t k = 0; k < w; ++k) {
                 a[(i*stride + j)*w + k] = j < 3 ? H[(rows[i]*3 + j)*w + k]
-                    : j < N ? Hk[(rows[i]*3 + j - 3)*w + k]
+                    : j < 6 ? Hk[(rows[i]*3 + j - 3)*w + k]
                     : j == N ? force[rows[i]*w + k] : 0;
             }
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 3, w, code, tau);
     deliver(x + 3*w, 3, w, code, lambda);
@@ -5885,28 +5943,27 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 {
     enum { N = 9, PADDED = 12 };
     const size_t stride = w == 1 ? PADDED : N + 1;
+    real X_in[7*LANES], V_in[6*LANES], tau_in[3*LANES], wrench_in[6*LANES];
     real M[36*LANES], Z[6*LANES], H[18*LANES];
     real force[6*LANES], a[N*PADDED*LANES], x[N*LANES];
     real Hk[18*LANES], constraint_bias[3*LANES];
     verdict values, *const t = &values;
     start(w, t);
-    check_input(X, 7, w, t);
-    check_input(V, 6, w, t);
-    check_input(tau, 3, w, t);
+    X = take(7, w, X, X_in, t);
+    V = take(6, w, V, V_in, t);
+    tau = take(3, w, tau, tau_in, t);
     dynamics_run(m, w, X, V, M, Z, H, Hk, constraint_bias, t);
-    constraint_bias_run(m, w, X, V, constraint_bias, t);
     for (size_t i = 0; i < 6; ++i) {
         for (size_t k = 0; k < w; ++k) {
             real sum = -Z[i*w + k];
             for (size_t j = 0; j < 3; ++j) {
-                sum += H[(i*3 + j)*w + k]*tau[3*k + j];
+                sum += H[(i*3 + j)*w + k]*tau[j*w + k];
             }
             force[i*w + k] = sum;
         }
     }
     if (wrench) {
-        check_input(wrench, 6, w, t);
-        add_wrench(wrench, 1, w, force);
+        add_wrench(take(6, w, wrench, wrench_in, t), 1, w, force);
     }
     clear(a, N*stride*w);
     for (size_t i = 0; i < 6; ++i) {
@@ -5928,7 +5985,7 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
         }
     }
     solve(N, stride, w, a, x, t->singular);
-    check_output(x, N, w, t);
+    check(N, w, x, t->overflow);
     judge(t, w, code);
     deliver(x, 6, w, code, A);
     deliver(x + 6*w, 3, w, code, lambda);
@@ -5939,14 +5996,12 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
         real *completed)
 {
-    const int ok = all_finite(A, 6);
+    const int code = all_finite(A, 6) ? TRIPOD_3UPU_OK : TRIPOD_3UPU_INVALID;
     (void)m;
     (void)X;
     (void)V;
-    for (size_t i = 0; i < 6; ++i) {
-        completed[i] = ok ? A[i] : R(NAN);
-    }
-    return ok ? TRIPOD_3UPU_OK : TRIPOD_3UPU_INVALID;
+    deliver(A, 6, 1, &code, completed);
+    return code;
 }
 
 int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, const real *A,
@@ -5959,7 +6014,7 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
     verdict values, *const t = &values;
     int code = tripod_3upu_inverse_dynamics(m, X, V, A, wrench, tau, lambda);
     if (code != TRIPOD_3UPU_OK) {
-        deliver(leg_force, 18, 1, &code, forces);
+        refuse(18, forces);
         return code;
     }
     start(1, t);
@@ -5974,7 +6029,7 @@ int tripod_3upu_leg_reactions(const prepared *m, const real *X, const real *V, c
             leg_force[6*bound[i] + e] += lambda[i]*constraint_direction[6*i + e];
         }
     }
-    check_output(leg_force, 18, 1, t);
+    check(18, 1, leg_force, t->overflow);
     judge(t, 1, &code);
     deliver(leg_force, 18, 1, &code, forces);
     return code;
@@ -5986,8 +6041,8 @@ int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *ki
     verdict values, *const t = &values;
     int code;
     start(1, t);
-    check_input(X, 7, 1, t);
-    check_input(V, 6, 1, t);
+    check(7, 1, X, t->invalid);
+    check(6, 1, V, t->invalid);
     M_run(m, 1, X, M, t);
     potential_run(m, 1, X, energies + 1, t);
     for (size_t i = 0; i < 6; ++i) {
@@ -5995,7 +6050,7 @@ int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *ki
             energies[0] += V[i]*M[i*6 + j]*V[j]/2;
         }
     }
-    check_output(energies, 2, 1, t);
+    check(2, 1, energies, t->overflow);
     judge(t, 1, &code);
     deliver(energies, 1, 1, &code, kinetic);
     deliver(energies + 1, 1, 1, &code, potential);

@@ -139,7 +139,7 @@ _RULES = {  # shape, entries that are zero by structure, what the values must be
     "upu_base_point": ((3, 3), (), ""),
     "upu_base_frame": ((3, 3, 3), (), "rotation"),
     "upu_platform_point": ((3, 3), (), ""),
-    "upu_platform_joint_axis_platform": ((3, 3), (), ""),
+    "upu_platform_joint_axis_platform": ((3, 3), (), "unit"),
     "upu_link2_mass": ((3,), (), "mass"),
     "upu_link2_centre_of_mass": ((3, 3), (), ""),
     "upu_link2_inertia": ((3, 3, 3), (), "inertia"),
@@ -352,8 +352,8 @@ def _prepare(p):
     )
     size_t_3 = size_t + size_t_2
     size = sqrt(size_t_3)
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_t = size*size_t_3
+    # (upu-V6) triple product of the velocity vectors
+    volume_c_t = size*size_t_3
     # (upu-G4) first moment of link 3 about the origin of link 3
     h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass
     h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass
@@ -474,7 +474,6 @@ def _prepare(p):
             "h_3_x": np.broadcast_to(h_3_x, _upu),
             "h_3_y": np.broadcast_to(h_3_y, _upu),
             "h_3_z": np.broadcast_to(h_3_z, _upu),
-            "n_c1_t": np.broadcast_to(n_c1_t, _upu),
             "size": np.broadcast_to(size, _upu),
             "size_t_3": np.broadcast_to(size_t_3, _upu),
             "upu_base_frame_xx": np.broadcast_to(upu_base_frame_xx, _upu),
@@ -497,6 +496,7 @@ def _prepare(p):
             "upu_platform_point_x": np.broadcast_to(upu_platform_point_x, _upu),
             "upu_platform_point_y": np.broadcast_to(upu_platform_point_y, _upu),
             "upu_platform_point_z": np.broadcast_to(upu_platform_point_z, _upu),
+            "volume_c_t": np.broadcast_to(volume_c_t, _upu),
         },
     }
     return shared, legs
@@ -760,13 +760,12 @@ def _dynamics_upu(c, k, x, s, f):
     (
     J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz,
         Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x,
-        h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size, size_t_3, upu_base_frame_xx,
-        upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
-        upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
-        upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
-        upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z,
+        h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
+        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -837,12 +836,12 @@ def _dynamics_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -869,9 +868,9 @@ def _dynamics_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c1_z
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-A19) coefficient of the acceleration in: angular acceleration of link 1
     d_alpha_1_t = inv_w_1_t_25*s_2
     d_alpha_1_t_2 = c_2*inv_w_1_t_25
@@ -931,7 +930,7 @@ def _dynamics_upu(c, k, x, s, f):
     )
     Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
     Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
-    # (upu-V14) moment part of reciprocal wrench 1
+    # (upu-V15) moment part of reciprocal wrench 1
     o_1_x = end_p1_r3_y*w_1_t_4
     o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
@@ -1111,22 +1110,22 @@ def _dynamics_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (upu-V17) rate at which the joints turn along moment direction 1
+    # (upu-V18) rate at which the joints turn along moment direction 1
     eta_1 = n_m1_in_base_x*omega_x + n_m1_in_base_y*omega_y + n_m1_in_base_z*omega_z
     # (upu-V1) velocity of the connection point
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1_t_2 = (
     inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c1_z)
+        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c_z)
     )
-    # (upu-V21) angular velocity of link 1
+    # (upu-V22) angular velocity of link 1
     omega_1_t = qd_1_t_2*s_2
     omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
@@ -1153,7 +1152,7 @@ def _dynamics_upu(c, k, x, s, f):
         end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
     )
     nu_1 = -nu_1_t - nu_1_t_2
-    # (upu-V23) centripetal tensor of link 2
+    # (upu-V24) centripetal tensor of link 2
     W_2_t = omega_1_t*omega_1_t
     W_2_t_2 = omega_1_t_2*omega_1_t_2
     W_2_t_3 = qd_1_t*qd_1_t
@@ -1178,7 +1177,7 @@ def _dynamics_upu(c, k, x, s, f):
         axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
     )
     qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-    qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1)
+    qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1)
     # (upu-A20) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o_t_3*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o_t_3
@@ -1229,7 +1228,7 @@ def _dynamics_upu(c, k, x, s, f):
     # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
     G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
-    G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z
+    G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z
     # (upu-N59) velocity and gravity terms of the leg force
     U_in_base_x = (
     G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
@@ -1263,23 +1262,23 @@ def _dynamics_upu(c, k, x, s, f):
     H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
     H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
     H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
-    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
-    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
+    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
+    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (M9) moment of the column's unit force about the platform origin
-    Hk_a_1_x = n_m1_in_base_x + n_c1_t_3*q_in_base_z - n_c1_t_4*q_in_base_y
-    Hk_a_1_y = n_m1_in_base_y + n_c1_t_4*q_in_base_x - n_c1_t_2*q_in_base_z
-    Hk_a_1_z = n_m1_in_base_z + n_c1_t_2*q_in_base_y - n_c1_t_3*q_in_base_x
+    Hk_a_1_x = n_m1_in_base_x + n_c_t_2*q_in_base_z - n_c_t_3*q_in_base_y
+    Hk_a_1_y = n_m1_in_base_y + n_c_t_3*q_in_base_x - n_c_t*q_in_base_z
+    Hk_a_1_z = n_m1_in_base_z + n_c_t*q_in_base_y - n_c_t_2*q_in_base_x
     # (M11) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1 = nu_1 - n_c1_z*rel_o_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    gamma_c1 = nu_1 - n_c_z*rel_o_z
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
         M_aa_t_3, M_aa_t_4, M_aa_t_5, M_aa_t_6, U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t,
         Z_a_t_2, Z_a_t_3,), (axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t,
-        H_a_3_t_2, H_a_3_t_3, -n_c1_t_2, -n_c1_t_3, -n_c1_t_4, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
+        H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
         gamma_c1,),
     )
 
@@ -1407,13 +1406,12 @@ def _M_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xx, J_group_2_xy, J_group_2_xz, J_group_2_yy, J_group_2_yz, J_group_2_zz, branch_1,
-        branch_2, h_3_x, h_3_y, h_3_z, n_c1_t, size, size_t_3, upu_base_frame_xx,
-        upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy,
-        upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz,
-        upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
-        upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z,
+        branch_2, h_3_x, h_3_y, h_3_z, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
+        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
+        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_link3_mass, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z, volume_c_t,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (upu-K1) from the base point to the connection point
@@ -1480,12 +1478,12 @@ def _M_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -1512,9 +1510,9 @@ def _M_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
-    w_1_t_4 = inv_w_1_t_25*n_c1_z
+    w_1_t_4 = inv_w_1_t_25*n_c_z
     # (upu-A19) coefficient of the acceleration in: angular acceleration of link 1
     d_alpha_1_t = inv_w_1_t_25*s_2
     d_alpha_1_t_2 = c_2*inv_w_1_t_25
@@ -1574,7 +1572,7 @@ def _M_upu(c, k, x, s, f):
     )
     Q_t_18 = Q_t_10*axis_z_upu_axes2_in_base_z + Q_t_7*axis_y_upu_axes2_in_base_z
     Q_t_19 = 2.0*Q_t_18 + upu_link3_mass
-    # (upu-V14) moment part of reciprocal wrench 1
+    # (upu-V15) moment part of reciprocal wrench 1
     o_1_x = end_p1_r3_y*w_1_t_4
     o_1_y = end_p1_r3_x*w_1_t_4
     # (upu-A18) coefficient of the acceleration in: angular acceleration of link 1
@@ -1747,7 +1745,7 @@ def _M_upu(c, k, x, s, f):
         d_G_m1_in_base_y*n_m1_in_base_z*q_in_base_x - M_ta_t_8*q_in_base_x -
         d0_c_in_base_z_4*q_in_base_x - d_G_m1_in_base_x*n_m1_in_base_z*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (Q_t_12, Q_t_13, Q_t_14, Q_t_16, Q_t_17, Q_t_19, M_ta_t_12, M_ta_t_13, M_ta_t_14,
         M_ta_t_15, M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_19, M_ta_t_20, M_aa_t, M_aa_t_2,
@@ -1887,13 +1885,13 @@ def _Z_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size,
+        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size,
         size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
         upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
         upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
         upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
         upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z,
+        upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -1964,12 +1962,12 @@ def _Z_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -1996,7 +1994,7 @@ def _Z_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
@@ -2005,7 +2003,7 @@ def _Z_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (upu-V17) rate at which the joints turn along moment direction 1
+    # (upu-V18) rate at which the joints turn along moment direction 1
     eta_1 = (
     omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y) +
         omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y) +
@@ -2015,16 +2013,16 @@ def _Z_upu(c, k, x, s, f):
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1_t_2 = (
     inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c1_z)
+        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c_z)
     )
-    # (upu-V21) angular velocity of link 1
+    # (upu-V22) angular velocity of link 1
     omega_1_t = qd_1_t_2*s_2
     omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
@@ -2051,7 +2049,7 @@ def _Z_upu(c, k, x, s, f):
         end_p1_r3_x*omega_1_t) - nd_m1_y*(omega_1_t_2 + omega_tip_y)
     )
     nu_1 = -nu_1_t - nu_1_t_2
-    # (upu-V23) centripetal tensor of link 2
+    # (upu-V24) centripetal tensor of link 2
     W_2_t = omega_1_t*omega_1_t
     W_2_t_2 = omega_1_t_2*omega_1_t_2
     W_2_t_3 = qd_1_t*qd_1_t
@@ -2076,7 +2074,7 @@ def _Z_upu(c, k, x, s, f):
         axis_y_upu_axes2_in_base_z*u_1_z - bias_t_2
     )
     qdd_1_o_t_2 = inv_root_2*qdd_1_o_t
-    qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c1_z*nu_1)
+    qdd_1_o_t_3 = inv_w_1_t_25*(rel_o_z + n_c_z*nu_1)
     # (upu-A20) remainder without the acceleration in: angular acceleration of link 1
     alpha_1_o_t = qdd_1_o_t_3*s_2
     alpha_1_o_t_2 = c_2*qdd_1_o_t_3
@@ -2127,7 +2125,7 @@ def _Z_upu(c, k, x, s, f):
     # (upu-N41) remainder without the acceleration in: force at the connection point that balances the leg's inertia and weight along all freedoms
     G_o_t = f_3_o_y + inv_root_2*mu_2_o_z
     G_o_t_2 = N_2_o_r0_y*inv_w_1_t_25
-    G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c1_z
+    G_o_t_3 = N_2_o_r0_y*inv_w_1_t_25*n_c_z
     # (upu-N59) velocity and gravity terms of the leg force
     U_in_base_x = (
     G_o_t*axis_y_upu_axes2_in_base_x + G_o_t_2*axis_z_upu_axes2_in_base_x +
@@ -2157,7 +2155,7 @@ def _Z_upu(c, k, x, s, f):
     G_m_o_y*axis_y_upu_axes2_in_base_z + U_in_base_y*q_in_base_x - G_m_o_x*axis_x_upu_axes2_z -
         U_in_base_x*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (U_in_base_x, U_in_base_y, U_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,), (),)
 
 
@@ -2262,7 +2260,7 @@ def _H_upu(c, k, x, s, f):
     c_1 = inv_root_1*py_1
     # (upu-K7) sine of the angle of joint 1 from its reference direction
     s_1 = inv_root_1*px_1
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2343,12 +2341,12 @@ def _Hk_before(c, X, f):
 def _Hk_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
-        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z, volume_c_t,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (upu-K1) from the base point to the connection point
@@ -2415,10 +2413,10 @@ def _Hk_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    volume_c_t_2 = root_1*root_2
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2433,28 +2431,28 @@ def _Hk_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_z = (
     upu_base_frame_zx*w_1_t + upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz
     )
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
-    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
-    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
+    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
+    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z -
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
         end_p1_r3_y*(axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
-        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c1_t_4*q_in_base_y
+        axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y) - n_c_t_3*q_in_base_y
     )
     Hk_a_1_y = (
-    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x -
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
         end_p1_r3_y*(axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
-        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c1_t_2*q_in_base_z
+        axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z) - n_c_t*q_in_base_z
     )
     Hk_a_1_z = (
-    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y -
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
         end_p1_r3_y*(axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
-        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c1_t_3*q_in_base_x
+        axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x) - n_c_t_2*q_in_base_x
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size)
-    return (ok, (), (-n_c1_t_2, -n_c1_t_3, -n_c1_t_4, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size)
+    return (ok, (), (-n_c_t, -n_c_t_2, -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),)
 
 
 # constraint_bias: 495 mul, 318 add, 12 div, 6 sqrt, 0 trig
@@ -2516,12 +2514,12 @@ def _constraint_bias_before(c, X, V, f):
 def _constraint_bias_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
-        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2592,12 +2590,12 @@ def _constraint_bias_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2624,7 +2622,7 @@ def _constraint_bias_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_t_2 = omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -2632,7 +2630,7 @@ def _constraint_bias_upu(c, k, x, s, f):
     S_dot_x = S_dot_t + t_dot_x
     S_dot_y = S_dot_t_2 + t_dot_y
     S_dot_z = S_dot_t_3 + t_dot_z
-    # (upu-V17) rate at which the joints turn along moment direction 1
+    # (upu-V18) rate at which the joints turn along moment direction 1
     eta_1 = (
     omega_x*(axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y) +
         omega_y*(axis_y_upu_axes2_in_base_y*end_p1_r3_x - axis_x_upu_axes2_y*end_p1_r3_y) +
@@ -2642,16 +2640,16 @@ def _constraint_bias_upu(c, k, x, s, f):
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1_t_2 = (
     (S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c1_z)/w_1_t_3
+        S_dot_z*axis_z_upu_axes2_in_base_z + eta_1*n_c_z)/w_1_t_3
     )
-    # (upu-V21) angular velocity of link 1
+    # (upu-V22) angular velocity of link 1
     omega_1_t = qd_1_t_2*s_2
     omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
@@ -2686,8 +2684,8 @@ def _constraint_bias_upu(c, k, x, s, f):
         axis_z_upu_axes2_in_base_z*(S_dot_t_2*omega_x - S_dot_t*omega_y) - bias_z
     )
     # (M11) part of the constraint's second derivative that does not hold the acceleration
-    gamma_c1 = nu_1 - n_c1_z*rel_o_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    gamma_c1 = nu_1 - n_c_z*rel_o_z
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (gamma_c1,),)
 
 
@@ -2827,13 +2825,13 @@ def _required_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size,
+        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size,
         size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
         upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
         upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
         upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
         upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z,
+        upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2905,12 +2903,12 @@ def _required_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -2937,7 +2935,7 @@ def _required_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
@@ -2949,7 +2947,7 @@ def _required_upu(c, k, x, s, f):
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
@@ -2966,7 +2964,7 @@ def _required_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    # (upu-V23) centripetal tensor of link 2
+    # (upu-V24) centripetal tensor of link 2
     W_2_t = qd_1_t*qd_1_t
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
@@ -2980,30 +2978,30 @@ def _required_upu(c, k, x, s, f):
     H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z
     H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x
     H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
-    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
-    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
+    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
+    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
     # (M9) moment of the column's unit force about the platform origin
     Hk_a_1_x = (
-    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c1_t_3*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
-        - n_c1_t_4*q_in_base_y
+    axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z - axis_x_upu_axes2_x*end_p1_r3_y
+        - n_c_t_3*q_in_base_y
     )
     Hk_a_1_y = (
-    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c1_t_4*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
-        - n_c1_t_2*q_in_base_z
+    axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x - axis_x_upu_axes2_y*end_p1_r3_y
+        - n_c_t*q_in_base_z
     )
     Hk_a_1_z = (
-    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c1_t_2*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y
-        - n_c1_t_3*q_in_base_x
+    axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y - axis_x_upu_axes2_z*end_p1_r3_y -
+        n_c_t_2*q_in_base_x
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t_2 = (
     inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*omega_tip_x -
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*omega_tip_x -
         end_p1_r3_x*omega_tip_y))
     )
-    # (upu-V21) angular velocity of link 1
+    # (upu-V22) angular velocity of link 1
     omega_1_t = qd_1_t_2*s_2
     omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
@@ -3034,7 +3032,7 @@ def _required_upu(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (upu-V23) centripetal tensor of link 2
+    # (upu-V24) centripetal tensor of link 2
     W_2_t_2 = omega_1_t*omega_1_t
     W_2_t_3 = omega_1_t_2*omega_1_t_2
     W_2_xy = omega_1_t*omega_1_t_2
@@ -3052,7 +3050,7 @@ def _required_upu(c, k, x, s, f):
         S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
     )
     qdd_1_t_2 = inv_root_2*qdd_1_t
-    qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z)
+    qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
     # (upu-A17) angular acceleration of link 1
     alpha_1_t = qdd_1_t_3*s_2
     alpha_1_t_2 = c_2*qdd_1_t_3
@@ -3096,7 +3094,7 @@ def _required_upu(c, k, x, s, f):
     # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_3_y + inv_root_2*mu_2_z
     G_t_2 = N_2_r0_y*inv_w_1_t_25
-    G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z
+    G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z
     # (upu-N50) leg force on the platform without actuation and without the mass at the connection point
     c_in_base_x = (
     -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x
@@ -3123,11 +3121,11 @@ def _required_upu(c, k, x, s, f):
     G_m_x*axis_x_upu_axes2_z + c_in_base_y*q_in_base_x - G_m_y*axis_y_upu_axes2_in_base_z -
         c_in_base_x*q_in_base_y
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (c_in_base_x, c_in_base_y, c_in_base_z, R_a_t, R_a_t_2, R_a_t_3,), (axis_x_upu_axes2_x,
-        axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c1_t_2,
-        -n_c1_t_3, -n_c1_t_4, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
+        axis_x_upu_axes2_y, axis_x_upu_axes2_z, H_a_3_t, H_a_3_t_2, H_a_3_t_3, -n_c_t, -n_c_t_2,
+        -n_c_t_3, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,),
     )
 
 
@@ -3294,12 +3292,12 @@ def _joint_rates_before(c, X, V, f):
 def _joint_rates_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
-        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3369,12 +3367,12 @@ def _joint_rates_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -3401,7 +3399,7 @@ def _joint_rates_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     # (upu-V1) velocity of the connection point
     S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -3409,20 +3407,20 @@ def _joint_rates_upu(c, k, x, s, f):
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
     )
     qd_1_t_2 = (
     S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x +
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*(axis_x_upu_axes2_x*omega_x +
         axis_x_upu_axes2_y*omega_y + axis_x_upu_axes2_z*omega_z) -
         end_p1_r3_x*(axis_y_upu_axes2_in_base_x*omega_x + axis_y_upu_axes2_in_base_y*omega_y +
         axis_y_upu_axes2_in_base_z*omega_z))
     )
     qd_1_t_3 = qd_1_t_2/w_1_t_3
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (qd_1_t_3, qd_1_t, S_dot_tip_x,),)
 
 
@@ -3499,12 +3497,12 @@ def _joint_accelerations_before(c, X, V, A, f):
 def _joint_accelerations_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, n_c1_t, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy,
-        upu_base_frame_xz, upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz,
-        upu_base_frame_zx, upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x,
-        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
-        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
-        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
+    branch_1, branch_2, size, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
+        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
+        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
+        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
+        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
+        upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3576,12 +3574,12 @@ def _joint_accelerations_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -3608,7 +3606,7 @@ def _joint_accelerations_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
     # (upu-V1) velocity of the connection point
     S_dot_t = omega_y*q_in_base_z - omega_z*q_in_base_y
@@ -3620,7 +3618,7 @@ def _joint_accelerations_upu(c, k, x, s, f):
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
@@ -3639,13 +3637,13 @@ def _joint_accelerations_upu(c, k, x, s, f):
     )
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t_2 = (
     inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*omega_tip_x -
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*omega_tip_x -
         end_p1_r3_x*omega_tip_y))
     )
-    # (upu-V21) angular velocity of link 1
+    # (upu-V22) angular velocity of link 1
     omega_1_t = qd_1_t_2*s_2
     omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
@@ -3691,12 +3689,12 @@ def _joint_accelerations_upu(c, k, x, s, f):
     inv_root_2*(S_ddot_x*axis_y_upu_axes2_in_base_x + S_ddot_y*axis_y_upu_axes2_in_base_y +
         S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t*qd_1_t) + omega_1_t*omega_1_t_2
     )
-    qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z)
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    qdd_1_t_2 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (ok, (), (qdd_1_t_2, qdd_1_t, rel_x,),)
 
 
-# constraints: 234 mul, 153 add, 9 div, 6 sqrt, 0 trig
+# constraints: 138 mul, 102 add, 3 div, 3 sqrt, 0 trig
 def _constraints_before(c, X, f):
     X_0 = X[0]
     X_1 = X[1]
@@ -3739,12 +3737,11 @@ def _constraints_before(c, X, f):
 def _constraints_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    branch_1, branch_2, n_c1_t, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz,
-        upu_base_frame_yx, upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx,
-        upu_base_frame_zy, upu_base_frame_zz, upu_base_point_x, upu_base_point_y,
-        upu_base_point_z, upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
-        upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z,
+    branch_1, size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_yx,
+        upu_base_frame_yy, upu_base_frame_zx, upu_base_frame_zy, upu_base_point_x,
+        upu_base_point_y, upu_base_point_z, upu_platform_joint_axis_platform_x,
+        upu_platform_joint_axis_platform_y, upu_platform_joint_axis_platform_z,
+        upu_platform_point_x, upu_platform_point_y, upu_platform_point_z,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (upu-K1) from the base point to the connection point
@@ -3768,17 +3765,6 @@ def _constraints_upu(c, k, x, s, f):
     rho2_1 = px_1*px_1 + py_1*py_1
     # (upu-K5) amplitude, with the sign of the branch
     root_1 = branch_1*sqrt(rho2_1)
-    # (upu-K9) the vector from joint 1 to the connection point, resolved along link 1
-    xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz
-    # (upu-K13) squared amplitude
-    rho2_2 = rho2_1 + xi_1_t*xi_1_t
-    # (upu-K14) amplitude, with the sign of the branch
-    root_2 = branch_2*sqrt(rho2_2)
-    # (upu-K15) cosine of the angle of joint 2 from its reference direction
-    inv_root_2 = 1.0/root_2
-    c_2 = inv_root_2*root_1
-    # (upu-K16) sine of the angle of joint 2 from its reference direction
-    s_2 = inv_root_2*xi_1_t
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     end_p1_r0_x = (
     upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx + R_yx*upu_base_frame_yx +
@@ -3794,30 +3780,12 @@ def _constraints_upu(c, k, x, s, f):
         upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy + R_yz*upu_base_frame_yy +
         R_zz*upu_base_frame_zy)
     )
-    end_p1_r0_z = (
-    upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz + R_yx*upu_base_frame_yz +
-        R_zx*upu_base_frame_zz) + upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz +
-        R_yy*upu_base_frame_yz + R_zy*upu_base_frame_zz) +
-        upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz + R_yz*upu_base_frame_yz +
-        R_zz*upu_base_frame_zz)
-    )
     # (upu-K6) cosine of the angle of joint 1 from its reference direction
     inv_root_1 = 1.0/root_1
-    c_1 = inv_root_1*py_1
-    # (upu-K7) sine of the angle of joint 1 from its reference direction
-    s_1 = inv_root_1*px_1
     # (upu-V5) direction 1 of the moment that the platform joint transmits
-    end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1
-    # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
-    # (M10) distance by which the leg misses the connection point, along a direction left out
-    phi_c1_t = (
-    root_2*(py_1*s_1 - c_1*px_1)*(-c_2*(end_p1_r0_z*s_2 - c_2*end_p1_r1_y) - s_2*(-c_2*end_p1_r0_z
-        - end_p1_r1_y*s_2))/volume_c_t
-    )
-    phi_c1 = c_1*end_p1_r0_x - phi_c1_t - end_p1_r0_y*s_1
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t)
-    return (ok, (), (phi_c1,),)
+    end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3)
+    return (ok, (), (-end_p1_r1_x,),)
 
 
 # legs: 810 mul, 570 add, 12 div, 6 sqrt, 0 trig
@@ -3894,13 +3862,13 @@ def _legs_upu(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_group_2_xy, J_group_2_xz, J_group_2_yz, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, branch_1,
-        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, n_c1_t, size,
+        branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z, size,
         size_t_3, upu_base_frame_xx, upu_base_frame_xy, upu_base_frame_xz, upu_base_frame_yx,
         upu_base_frame_yy, upu_base_frame_yz, upu_base_frame_zx, upu_base_frame_zy,
         upu_base_frame_zz, upu_base_point_x, upu_base_point_y, upu_base_point_z, upu_link3_mass,
         upu_platform_joint_axis_platform_x, upu_platform_joint_axis_platform_y,
         upu_platform_joint_axis_platform_z, upu_platform_point_x, upu_platform_point_y,
-        upu_platform_point_z,
+        upu_platform_point_z, volume_c_t,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3972,12 +3940,12 @@ def _legs_upu(c, k, x, s, f):
     end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y
     end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2
     # (upu-V6) triple product of the velocity vectors
-    volume_c_t = root_1*root_2
+    volume_c_t_2 = root_1*root_2
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_z = n_m1_r0_y*root_2/volume_c_t
-    # (upu-V8) force part of reciprocal wrench 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_z = n_m1_r0_y*root_2/volume_c_t_2
+    # (upu-V9) force part of reciprocal wrench 1
     axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx
     axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx
     axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx
@@ -4004,7 +3972,7 @@ def _legs_upu(c, k, x, s, f):
     axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
         axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x
     )
-    w_1_t_3 = root_1 + n_c1_z*n_m1_r0_y
+    w_1_t_3 = root_1 + n_c_z*n_m1_r0_y
     inv_w_1_t_25 = 1.0/w_1_t_3
     # (upu-V5) direction 1 of the moment that the platform joint transmits
     n_m1_in_base_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x - axis_x_upu_axes2_x*end_p1_r3_y
@@ -4020,7 +3988,7 @@ def _legs_upu(c, k, x, s, f):
     S_dot_tip_x = (
     S_dot_x*axis_x_upu_axes2_x + S_dot_y*axis_x_upu_axes2_y + S_dot_z*axis_x_upu_axes2_z
     )
-    # (upu-V18) rate of joint 1
+    # (upu-V19) rate of joint 1
     qd_1_t = (
     inv_root_2*(S_dot_x*axis_y_upu_axes2_in_base_x + S_dot_y*axis_y_upu_axes2_in_base_y +
         S_dot_z*axis_y_upu_axes2_in_base_z)
@@ -4037,7 +4005,7 @@ def _legs_upu(c, k, x, s, f):
     axis_z_upu_axes2_in_base_x*omega_x + axis_z_upu_axes2_in_base_y*omega_y +
         axis_z_upu_axes2_in_base_z*omega_z
     )
-    # (upu-V23) centripetal tensor of link 2
+    # (upu-V24) centripetal tensor of link 2
     W_2_t = qd_1_t*qd_1_t
     # (upu-A5) acceleration of the connection point at zero joint accelerations
     bias_t = 2.0*S_dot_tip_x
@@ -4047,17 +4015,17 @@ def _legs_upu(c, k, x, s, f):
     g_r1_y = -c_1*g_r0_y - g_r0_x*s_1
     g_r3_x = g_r0_z*s_2 - c_2*g_r1_y
     g_r3_y = -c_2*g_r0_z - g_r1_y*s_2
-    # (upu-V7) force of unit wrench 1 that the leg's freedoms leave out
-    n_c1_t_2 = axis_z_upu_axes2_in_base_x*n_c1_z
-    n_c1_t_3 = axis_z_upu_axes2_in_base_y*n_c1_z
-    n_c1_t_4 = axis_z_upu_axes2_in_base_z*n_c1_z
-    # (upu-V18) rate of joint 1
+    # (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+    n_c_t = axis_z_upu_axes2_in_base_x*n_c_z
+    n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z
+    n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z
+    # (upu-V19) rate of joint 1
     qd_1_t_2 = (
     inv_w_1_t_25*(S_dot_x*axis_z_upu_axes2_in_base_x + S_dot_y*axis_z_upu_axes2_in_base_y +
-        S_dot_z*axis_z_upu_axes2_in_base_z - n_c1_z*(end_p1_r3_y*omega_tip_x -
+        S_dot_z*axis_z_upu_axes2_in_base_z - n_c_z*(end_p1_r3_y*omega_tip_x -
         end_p1_r3_x*omega_tip_y))
     )
-    # (upu-V21) angular velocity of link 1
+    # (upu-V22) angular velocity of link 1
     omega_1_t = qd_1_t_2*s_2
     omega_1_t_2 = c_2*qd_1_t_2
     # (upu-A8) rate of moment direction 1
@@ -4088,7 +4056,7 @@ def _legs_upu(c, k, x, s, f):
     S_ddot_x = a_p_x + S_dot_t_3*omega_y - S_dot_t_2*omega_z
     S_ddot_y = a_p_y + S_dot_t*omega_z - S_dot_t_3*omega_x
     S_ddot_z = a_p_z + S_dot_t_2*omega_x - S_dot_t*omega_y
-    # (upu-V23) centripetal tensor of link 2
+    # (upu-V24) centripetal tensor of link 2
     W_2_t_2 = omega_1_t*omega_1_t
     W_2_t_3 = omega_1_t_2*omega_1_t_2
     W_2_xy = omega_1_t*omega_1_t_2
@@ -4106,7 +4074,7 @@ def _legs_upu(c, k, x, s, f):
         S_ddot_z*axis_y_upu_axes2_in_base_z - bias_t_2
     )
     qdd_1_t_2 = inv_root_2*qdd_1_t
-    qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c1_z)
+    qdd_1_t_3 = inv_w_1_t_25*(rel_z + etad_1*n_c_z)
     # (upu-A17) angular acceleration of link 1
     alpha_1_t = qdd_1_t_3*s_2
     alpha_1_t_2 = c_2*qdd_1_t_3
@@ -4150,7 +4118,7 @@ def _legs_upu(c, k, x, s, f):
     # (upu-N38) force at the connection point that balances the leg's inertia and weight along all freedoms
     G_t = f_3_y + inv_root_2*mu_2_z
     G_t_2 = N_2_r0_y*inv_w_1_t_25
-    G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c1_z
+    G_t_3 = N_2_r0_y*inv_w_1_t_25*n_c_z
     # (upu-N50) leg force on the platform without actuation and without the mass at the connection point
     c_in_base_x = (
     -G_t*axis_y_upu_axes2_in_base_x - G_t_2*axis_z_upu_axes2_in_base_x - axis_x_upu_axes2_x*f_3_x
@@ -4168,11 +4136,11 @@ def _legs_upu(c, k, x, s, f):
     c_m_in_base_x = G_m_x*axis_x_upu_axes2_x - G_m_y*axis_y_upu_axes2_in_base_x
     c_m_in_base_y = G_m_x*axis_x_upu_axes2_y - G_m_y*axis_y_upu_axes2_in_base_y
     c_m_in_base_z = G_m_x*axis_x_upu_axes2_z - G_m_y*axis_y_upu_axes2_in_base_z
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t) > _TOLERANCE * n_c1_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * size_t_3) & (abs(-volume_c_t_2) > _TOLERANCE * volume_c_t) & (abs(root_2) > _TOLERANCE * size) & (abs(w_1_t_3) > _TOLERANCE * size)
     return (
     ok, (), (c_in_base_x, c_in_base_y, c_in_base_z, c_m_in_base_x, c_m_in_base_y, c_m_in_base_z,
-        axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, -n_c1_t_2, -n_c1_t_3,
-        -n_c1_t_4, n_m1_in_base_x, n_m1_in_base_y, n_m1_in_base_z,),
+        axis_x_upu_axes2_x, axis_x_upu_axes2_y, axis_x_upu_axes2_z, -n_c_t, -n_c_t_2, -n_c_t_3,
+        n_m1_in_base_x, n_m1_in_base_y, n_m1_in_base_z,),
     )
 
 
@@ -4317,13 +4285,13 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 3)), ('Hk', (6, 3)), ('constraint_
 (),
 ('J_group_2_xx', 'J_group_2_xy', 'J_group_2_xz', 'J_group_2_yy', 'J_group_2_yz', 'J_group_2_zz',
             'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y',
-            'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size',
-            'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz',
-            'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx',
-            'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y',
-            'upu_base_point_z', 'upu_link3_mass', 'upu_platform_joint_axis_platform_x',
+            'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3',
+            'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx',
+            'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy',
+            'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z',
+            'upu_link3_mass', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -4373,13 +4341,13 @@ arrays=(('M', (6, 6)),),
             "upu",
 (),
 ('J_group_2_xx', 'J_group_2_xy', 'J_group_2_xz', 'J_group_2_yy', 'J_group_2_yz', 'J_group_2_zz',
-            'branch_1', 'branch_2', 'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3',
+            'branch_1', 'branch_2', 'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3',
             'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx',
             'upu_base_frame_yy', 'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy',
             'upu_base_frame_zz', 'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z',
             'upu_link3_mass', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,
@@ -4416,13 +4384,13 @@ arrays=(('Z', (6,)),),
 (),
 ('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
             'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx',
+            'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3', 'upu_base_frame_xx',
             'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy',
             'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz',
             'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z', 'upu_link3_mass',
             'upu_platform_joint_axis_platform_x', 'upu_platform_joint_axis_platform_y',
             'upu_platform_joint_axis_platform_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z'),
+            'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             6,
@@ -4486,12 +4454,12 @@ arrays=(('Hk', (6, 3)),),
             _Hk_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -4520,12 +4488,12 @@ arrays=(('constraint_bias', (3,)),),
             _constraint_bias_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -4552,13 +4520,13 @@ arrays=(('required', (6,)), ('H', (6, 3)), ('Hk', (6, 3))),
 (),
 ('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
             'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx',
+            'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3', 'upu_base_frame_xx',
             'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy',
             'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz',
             'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z', 'upu_link3_mass',
             'upu_platform_joint_axis_platform_x', 'upu_platform_joint_axis_platform_y',
             'upu_platform_joint_axis_platform_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z'),
+            'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             6,
@@ -4631,12 +4599,12 @@ arrays=(('qd', (9,)),),
             _joint_rates_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -4662,12 +4630,12 @@ arrays=(('qdd', (9,)),),
             _joint_accelerations_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
+('branch_1', 'branch_2', 'size', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
             'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
             'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
-            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
+            'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -4693,9 +4661,8 @@ arrays=(('constraints', (3,)),),
             _constraints_upu,
             "upu",
 (),
-('branch_1', 'branch_2', 'n_c1_t', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy',
-            'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy', 'upu_base_frame_yz',
-            'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz', 'upu_base_point_x',
+('branch_1', 'size_t_3', 'upu_base_frame_xx', 'upu_base_frame_xy', 'upu_base_frame_yx',
+            'upu_base_frame_yy', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_point_x',
             'upu_base_point_y', 'upu_base_point_z', 'upu_platform_joint_axis_platform_x',
             'upu_platform_joint_axis_platform_y', 'upu_platform_joint_axis_platform_z',
             'upu_platform_point_x', 'upu_platform_point_y', 'upu_platform_point_z'),
@@ -4724,13 +4691,13 @@ arrays=(('leg_force', (3, 6)), ('drive', (3, 6)), ('constraint_direction', (3, 6
 (),
 ('J_group_2_xy', 'J_group_2_xz', 'J_group_2_yz', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
             'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y', 'h_2_z',
-            'h_3_x', 'h_3_y', 'h_3_z', 'n_c1_t', 'size', 'size_t_3', 'upu_base_frame_xx',
+            'h_3_x', 'h_3_y', 'h_3_z', 'size', 'size_t_3', 'upu_base_frame_xx',
             'upu_base_frame_xy', 'upu_base_frame_xz', 'upu_base_frame_yx', 'upu_base_frame_yy',
             'upu_base_frame_yz', 'upu_base_frame_zx', 'upu_base_frame_zy', 'upu_base_frame_zz',
             'upu_base_point_x', 'upu_base_point_y', 'upu_base_point_z', 'upu_link3_mass',
             'upu_platform_joint_axis_platform_x', 'upu_platform_joint_axis_platform_y',
             'upu_platform_joint_axis_platform_z', 'upu_platform_point_x', 'upu_platform_point_y',
-            'upu_platform_point_z'),
+            'upu_platform_point_z', 'volume_c_t'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -4804,9 +4771,12 @@ def _solve(a, b):
     b = np.broadcast_to(b, (*lead, n)).reshape(count, n).copy()
     if count <= _FEW:
         rows = [_solve_one(matrix, right) for matrix, right in zip(a.tolist(), b.tolist())]
-        return np.array(rows).reshape(*lead, n)
-    with np.errstate(all="ignore"):
-        return _solve_block(a, b).reshape(*lead, n)
+        x = np.array(rows).reshape(count, n)
+    else:
+        with np.errstate(all="ignore"):
+            x = _solve_block(a, b)
+    x[~np.isfinite(x).all(axis=1)] = np.nan
+    return x.reshape(*lead, n)
 
 
 def _solve_one(a, b):
@@ -4897,6 +4867,14 @@ def _together(failed, *arrays):
     return [array for array, _ in arrays]
 
 
+def _known(array, axes, *inputs):
+    """The array, NaN in every row in which one of its entries or an input is not finite."""
+    failed = ~np.isfinite(array).all(axis=tuple(range(-axes, 0)))
+    for value in inputs:
+        failed = failed | ~np.isfinite(value).all(axis=-1)
+    return _together(failed, (array, axes))[0]
+
+
 def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
@@ -4915,17 +4893,19 @@ def forward_dynamics(X, V, tau, p=None, wrench=None):
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
     tau = _vector("forward_dynamics", "tau", tau, NU)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    force = (matrix @ tau[..., None])[..., 0] + _external("forward_dynamics", wrench) - bias
+    external = _external("forward_dynamics", wrench)
+    with np.errstate(all="ignore"):
+        force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _constrained_acceleration(inertia, rest[0], rest[1], force)
 
 
 def complete_acceleration(X, V, A, p=None):
     """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
     """
-    A = np.array(_vector("complete_acceleration", "A", A, NV))
-    _vector("complete_acceleration", "X", X, NQ)
-    _vector("complete_acceleration", "V", V, NV)
-    return A
+    X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
+    A = _vector("complete_acceleration", "A", A, NV)
+    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
@@ -5011,9 +4991,12 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
-    kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, M(X, p), V)
-    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0] + 0.0 * kinetic
-    return kinetic + 0.0 * potential, potential
+    inertia = M(X, p)
+    with np.errstate(all="ignore"):
+        kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
+    potential = _evaluate(_POTENTIAL, p, X=X)[0][..., 0]
+    known = np.where(np.isfinite(kinetic) & np.isfinite(potential), 0.0, np.nan)
+    return kinetic + known, potential + known
 
 
 def forward_kinematics(q_actuated, X0, p=None):
@@ -5079,7 +5062,7 @@ def rotation(X):
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
         (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
     )
-    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+    return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
 
 
 def pose(t, R):
@@ -5087,6 +5070,12 @@ def pose(t, R):
     R = np.asarray(R, dtype=float)
     if R.shape[-2:] != (3, 3):
         raise ValueError(f"pose: R has shape {R.shape}, expected (..., 3, 3)")
+    with np.errstate(all="ignore"):
+        return _with_position(t, _quaternion(R))
+
+
+def _quaternion(R):
+    """x, y, z, w of rotation matrices (..., 3, 3)."""
     d = np.einsum("...ii->...i", R)
     # each candidate is four times the quaternion times one of its entries; take the longest
     s = (R[..., 2, 1] + R[..., 1, 2], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 0] + R[..., 0, 1])
@@ -5100,8 +5089,7 @@ def pose(t, R):
     ], axis=-2)
     best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
     q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    q = q / np.linalg.norm(q, axis=-1, keepdims=True)
-    return _with_position(t, q)
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
 
 
 def _with_position(t, q):
@@ -5109,13 +5097,15 @@ def _with_position(t, q):
     t = _vector("pose", "t", t, _Q)
     lead = np.broadcast_shapes(t.shape[:-1], q.shape[:-1])
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
-    return np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1)
+    return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
 
 
 def pose_from_rpy(t, rpy):
     """X from roll, pitch, yaw (..., 3) about the fixed axes x, y, z, in that order."""
     half = 0.5 * _vector("pose_from_rpy", "rpy", rpy, 3)
-    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(np.cos(half), -1, 0), np.moveaxis(np.sin(half), -1, 0)
+    with np.errstate(all="ignore"):
+        cosines, sines = np.cos(half), np.sin(half)
+    (cx, cy, cz), (sx, sy, sz) = np.moveaxis(cosines, -1, 0), np.moveaxis(sines, -1, 0)
     q = np.stack((
         sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
         cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
@@ -5127,11 +5117,13 @@ def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV)."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
     q, w = X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
-    vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
-    scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
+    with np.errstate(all="ignore"):
+        vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
+        scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
     lead = np.broadcast_shapes(X.shape[:-1], V.shape[:-1])
     parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
-    return np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
+    rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
+    return _known(rate, 1, X)
 
 
 def _moved(X, step):
