@@ -25,7 +25,7 @@ STRUCTURES = {
     80: ("point, 4 RRR, redundant drives", (2, 2), False, 0, True, 4),
     13: ("spherical, 2 CRP, redundant drives", (3, 3), False, 0, True, 2),
     56: ("translational, PPRH-U and RR", (4, 4), True, 1, True, 0),
-    109: ("spherical, RRPR-U and RHR-U: fewer unknowns than conditions", (4, 3), True, 1, False, 0),
+    447: ("spatial, 2 RR and 2 HR: fewer unknowns than conditions", (3, 2), True, 4, False, 0),
 }
 
 
