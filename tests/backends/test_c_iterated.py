@@ -5,6 +5,7 @@ The mechanisms are drawn at random; the seeds are chosen for their structure.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from pne_sym.backends.describe import describe
 from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.backends.c_agreement import assert_agree, vectors
-from tests.backends.c_library import INVALID, NOT_CONVERGED, OK, Array, CLibrary
+from tests.backends.c_library import INVALID, NOT_CONVERGED, OK, SINGULAR, Array, CLibrary
 from tests.random.drawing import draw
 
 STATES = 11  # a lane of 8 states, and a remainder
@@ -25,7 +26,7 @@ STRUCTURES = {
     80: ("point, 4 RRR, redundant drives", (2, 2), False, 0, True, 4),
     13: ("spherical, 2 CRP, redundant drives", (3, 3), False, 0, True, 2),
     56: ("translational, PPRH-U and RR", (4, 4), True, 1, True, 0),
-    109: ("spherical, RRPR-U and RHR-U: fewer unknowns than conditions", (4, 3), True, 1, False, 0),
+    447: ("spatial, 2 RR and 2 HR: fewer unknowns than conditions", (3, 2), True, 4, False, 0),
 }
 
 
@@ -122,3 +123,44 @@ def test_precisions(planar: Manipulator, library: CLibrary, tmp_path: Path) -> N
         (found,), status = other.batch("inverse_dynamics", *inputs)
         assert (status == OK).all()
         assert np.abs(found - want).max() < tolerance * np.abs(want).max()
+
+
+@pytest.mark.parametrize("drives", [3, 6])
+def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Path) -> None:
+    """Planar, 3 RRP with the last displacement a coordinate of its own, one or two drives a leg.
+
+    With two, the forces on the rows of these coordinates are open.
+    """
+    drawn = draw(111, light=True)
+    legs = tuple(
+        replace(leg, joints=(leg.joints[0], replace(leg.joints[1], actuated=False), leg.joints[2]))
+        for leg in drawn.legs
+    )
+    manipulator = drawn if drives == 6 else replace(drawn, legs=legs)
+    d = describe(models.bundle(manipulator))
+    assert (d.is_coupled, d.free_rows, d.sizes["NU"]) == (True, (3, 4, 5), drives)
+    library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
+    given, module = near_home(manipulator, STATES), models.module(manipulator)
+    if drives == 6:
+        X, q0, V, A = (given[name] for name in ("X", "q0", "V", "A"))
+        (found,), status = library.batch("complete_acceleration", X, q0, V, A)
+        assert np.isnan(found).all()
+        assert (status == SINGULAR).all()
+        assert np.isnan(module.complete_acceleration(X, V, A, q0=q0)).all()
+        del library.api["complete_acceleration"]
+    assert assert_agree(library, module, given) >= 12
+
+
+def test_fewer_drives_than_freedoms(tmp_path: Path) -> None:
+    """No forces give any acceleration; everything else is as with more drives."""
+    manipulator = draw(117, light=True)
+    assert describe(models.bundle(manipulator)).is_underdriven
+    library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
+    given, module = near_home(manipulator, STATES), models.module(manipulator)
+    for name in ("inverse_dynamics", "leg_reactions"):
+        inputs = [given[i.name] for i in library.api[name].inputs]
+        (found,), status = library.batch(name, *inputs)
+        assert np.isnan(found).all()
+        assert (status == SINGULAR).all()
+    del library.api["inverse_dynamics"], library.api["leg_reactions"]
+    assert assert_agree(library, module, given) >= 10

@@ -18,7 +18,6 @@ from typing import Any
 import numpy as np
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import describe
 from pne_sym.backends.numpy_backend import NumpyBackend
 from pne_sym.model.errors import SpecError
 from pne_sym.model.manipulator import JointKind, Manipulator
@@ -101,19 +100,9 @@ def judge(
     verdict.constrained = module.NC > 0
     for state in drawn:
         _Comparison(manipulator, module, verdict, state, rng).run()
-    if with_c and _has_right_c(bundle):
+    if with_c:
         _judge_c(bundle, module, verdict, drawn)
     return verdict
-
-
-def _has_right_c(bundle: Bundle) -> bool:
-    """Whether C is due: the one place to delete when the C back end covers what NumPy covers.
-
-    Missing: loops closed by iteration, passive coordinates on which drives or constraints act,
-    and inverse dynamics with too few drives.
-    """
-    d = describe(bundle)
-    return not (d.is_numeric or d.is_coupled or d.is_underdriven)
 
 
 def _module(bundle: Bundle) -> Any:
@@ -291,20 +280,24 @@ def _forward(manipulator: Manipulator, ours: Result, state: State) -> Array:
     return np.asarray(c + N @ np.linalg.solve(N.T @ ours.M @ N, force))
 
 
-_C_FUNCTIONS: dict[str, Callable[[Any, State, Array], Any]] = {
-    "inverse_kinematics": lambda m, s, tau: m.inverse_kinematics(s.X),
-    "joint_rates": lambda m, s, tau: m.joint_rates(s.X, s.V),
-    "joint_accelerations": lambda m, s, tau: m.joint_accelerations(s.X, s.V, s.A),
-    "M": lambda m, s, tau: m.M(s.X),
-    "Z": lambda m, s, tau: m.Z(s.X, s.V),
-    "H": lambda m, s, tau: m.H(s.X),
-    "inverse_dynamics": lambda m, s, tau: m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench),
-    "forward_dynamics": lambda m, s, tau: m.forward_dynamics(s.X, s.V, tau, wrench=s.wrench),
-    "leg_reactions": lambda m, s, tau: m.leg_reactions(s.X, s.V, s.A, wrench=s.wrench),
-    "energy": lambda m, s, tau: m.energy(s.X, s.V),
-    "Hk": lambda m, s, tau: m.Hk(s.X),
-    "complete_acceleration": lambda m, s, tau: m.complete_acceleration(s.X, s.V, s.A),
-    "constraint_bias": lambda m, s, tau: m.constraint_bias(s.X, s.V),
+_C_FUNCTIONS: dict[str, Callable[[Any, State, Array, dict[str, Array]], Any]] = {
+    "inverse_kinematics": lambda m, s, tau, q0: m.inverse_kinematics(s.X, **q0),
+    "joint_rates": lambda m, s, tau, q0: m.joint_rates(s.X, s.V, **q0),
+    "joint_accelerations": lambda m, s, tau, q0: m.joint_accelerations(s.X, s.V, s.A, **q0),
+    "M": lambda m, s, tau, q0: m.M(s.X, **q0),
+    "Z": lambda m, s, tau, q0: m.Z(s.X, s.V, **q0),
+    "H": lambda m, s, tau, q0: m.H(s.X, **q0),
+    "inverse_dynamics": lambda m, s, tau, q0: m.inverse_dynamics(
+        s.X, s.V, s.A, wrench=s.wrench, **q0
+    ),
+    "forward_dynamics": lambda m, s, tau, q0: m.forward_dynamics(
+        s.X, s.V, tau, wrench=s.wrench, **q0
+    ),
+    "leg_reactions": lambda m, s, tau, q0: m.leg_reactions(s.X, s.V, s.A, wrench=s.wrench, **q0),
+    "energy": lambda m, s, tau, q0: m.energy(s.X, s.V, **q0),
+    "Hk": lambda m, s, tau, q0: m.Hk(s.X, **q0),
+    "complete_acceleration": lambda m, s, tau, q0: m.complete_acceleration(s.X, s.V, s.A, **q0),
+    "constraint_bias": lambda m, s, tau, q0: m.constraint_bias(s.X, s.V, **q0),
 }
 
 
@@ -315,10 +308,11 @@ def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State])
         for state in states:
             tau = np.random.default_rng(1).uniform(-20.0, 20.0, module.NU)
             arguments = {**state._asdict(), "tau": tau, "q0": state.q}
+            guess = {"q0": state.q} if verdict.iterated else {}
             for name, call in _C_FUNCTIONS.items():
                 if name not in library.api:
                     continue
-                expected = call(module, state, tau)
+                expected = call(module, state, tau, guess)
                 inputs = [arguments[argument.name] for argument in library.api[name].inputs]
                 outputs, _ = library.single(name, *inputs)
                 parts = expected if isinstance(expected, tuple) else (expected,)

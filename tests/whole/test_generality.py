@@ -42,11 +42,19 @@ ACCEPTED: dict[str, tuple[str, list[str]]] = {
     "spherical U": ("spherical", ["Rz0* Ry Px Rx | U", _UPS, _UPS]),
     "spherical R": ("spherical", ["Px* Py Pz Ry0 Rx | R", _UPS, _UPS]),
     "spherical rigid": ("spherical", ["Px* Py Pz Rz0 Ry0 Rx | rigid", _UPS, _UPS]),
+    "spatial, one joint at U": ("spatial", ["Rz* Ry | U", *[_UPS] * 4]),
+    "spatial, four joints at R": ("spatial", ["Rz* Ry Px* Rx | R", *[_UPS] * 3]),
+    "spatial, five joints at rigid": ("spatial", ["Rz* Ry Px* Rx Ry | rigid", *[_UPS] * 3]),
+    "translational U, freedoms left out": ("translational", ["Rz* Ry | U", _UPS, _UPS]),
+    "translational R, freedoms left out": ("translational", ["Rz* Ry Px | R", _UPS, _UPS]),
+    "translational rigid, freedoms left out": ("translational", ["Rz* Ry Px | rigid", _UPS, _UPS]),
+    "spherical U, freedoms left out": ("spherical", ["Rz* Ry | U", _UPS, _UPS]),
+    "spherical R, freedoms left out": ("spherical", ["Rz* Ry Px | R", _UPS, _UPS]),
+    "spherical rigid, freedoms left out": ("spherical", ["Rz* Ry Px | rigid", _UPS, _UPS]),
 }
 """Space and platform joint -> legs."""
 
 _TOO_MANY = "{} freedoms where the platform joint leaves {} to be determined"
-_LEFT_OUT = r"{} freedoms and {} transmitted moments leave out {} directions"
 _PINNED = r"platform_joint.kind: value '{}'; expected R or S: in the plane the legs are pinned"
 
 REFUSED: dict[str, tuple[str, list[str], str]] = {
@@ -70,33 +78,8 @@ REFUSED: dict[str, tuple[str, list[str], str]] = {
         ["Rz* Ry Px* Rz+ Rx Ry Rz | rigid", *[_UPS] * 4],
         _TOO_MANY.format(7, 6),
     ),
-    "spatial, one joint at U": ("spatial", ["Rz* Ry | U", *[_UPS] * 4], _LEFT_OUT.format(2, 1, 2)),
-    "spatial, four joints at R": (
-        "spatial",
-        ["Rz* Ry Px* Rx | R", *[_UPS] * 3],
-        _LEFT_OUT.format(4, 2, 1),
-    ),
-    "spatial, five joints at rigid": (
-        "spatial",
-        ["Rz* Ry Px* Rx Ry | rigid", *[_UPS] * 3],
-        _LEFT_OUT.format(5, 3, 1),
-    ),
     "translational S": ("translational", ["Rz* Ry Rx+ Px | S", _UPS, _UPS], _TOO_MANY.format(4, 3)),
-    "translational U": ("translational", ["Rz* Ry | U", _UPS, _UPS], _LEFT_OUT.format(2, 1, 2)),
-    "translational R": ("translational", ["Rz* Ry Px | R", _UPS, _UPS], _LEFT_OUT.format(3, 2, 2)),
-    "translational rigid": (
-        "translational",
-        ["Rz* Ry Px | rigid", _UPS, _UPS],
-        _LEFT_OUT.format(3, 3, 3),
-    ),
     "spherical S": ("spherical", ["Rz* Ry Rx+ Px | S", _UPS, _UPS], _TOO_MANY.format(4, 3)),
-    "spherical U": ("spherical", ["Rz* Ry | U", _UPS, _UPS], _LEFT_OUT.format(2, 1, 2)),
-    "spherical R": ("spherical", ["Rz* Ry Px | R", _UPS, _UPS], _LEFT_OUT.format(3, 2, 2)),
-    "spherical rigid": (
-        "spherical",
-        ["Rz* Ry Px | rigid", _UPS, _UPS],
-        _LEFT_OUT.format(3, 3, 3),
-    ),
 }
 """Space and platform joint -> legs and the mechanical reason; joints marked + lose the mark."""
 
