@@ -128,6 +128,20 @@ class LegGeometry:
             return 1
         return -1 if np.all(dots < -1 + TOLERANCE) else 0
 
+    def same_freedom(self, extra: int) -> tuple[int, int]:
+        """The joint next to an extra one that moves all beyond both as it does, and +1 or -1.
+
+        Two slides along one direction, or two revolute joints about one line; (0, 0) if none.
+        """
+        for k in (extra - 1, extra + 1):
+            if not 1 <= k <= self.count or self.is_extra(k) or {k, extra} & self.pitch.keys():
+                continue
+            sign = self.parallel(extra, k)
+            on_line = not self.turns(k) or self.offset[max(k, extra)] == ZeroVector
+            if sign and on_line and self.turns(k) == self.turns(extra):
+                return k, sign
+        return 0, 0
+
     def same_axes(self) -> Iterator[tuple[str, str]]:
         """Names of the axes of joints that point the same way by structure, in pairs."""
         for j, k in itertools.combinations(self.e, 2):

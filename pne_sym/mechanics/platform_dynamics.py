@@ -434,7 +434,7 @@ class PlatformWriter:
         self._constraint_columns()
 
     def _column(self, leg: Leg, j: int, places: tuple[int, ...]) -> None:
-        motion, book, g = leg.motion, self.book, leg.g
+        motion, book = leg.motion, self.book
         if j in motion.w:
             w: Any = motion.w[j]
             o = motion.o.get(j, ZeroVector)
@@ -443,17 +443,25 @@ class PlatformWriter:
         for k, other, rows in self._extras():
             if k is not leg:
                 continue
-            value = (
-                sp.S.One
-                if other == j
-                else (-Dot(motion.w[j], motion.v[other]) if j in motion.w else sp.S.Zero)
-            )
-            if other != j and j in motion.o and g.turns(other):
-                value = value - Dot(motion.o[j], g.e[other])
+            value = sp.S.One if other == j else -self._work(leg, j, other)
             if value != 0:
                 book.outputs.append(
                     Output("H", value, ((0, 0),), ((0, 0),), leg.name, rows, places)
                 )
+
+    @staticmethod
+    def _work(leg: Leg, j: int, extra: int) -> Any:
+        """Work of reciprocal wrench j along the freedom of an extra joint."""
+        motion, g = leg.motion, leg.g
+        if j not in motion.w:
+            return sp.S.Zero
+        twin, sign = g.same_freedom(extra)
+        if twin:  # by reciprocity, without computing it
+            return sp.Integer(sign if twin == j else 0)
+        work = Dot(motion.w[j], motion.v[extra])
+        if j in motion.o and g.turns(extra):
+            work = work + Dot(motion.o[j], g.e[extra])
+        return work
 
     def _wrench_rows(
         self, array: str, leg: Leg, wrench: tuple[Any, Any], places: tuple[int, ...]
@@ -519,7 +527,7 @@ class PlatformWriter:
     def _constrained_extras(self, leg: Leg, left_out: LeftOut, places: tuple[int, ...]) -> None:
         """What the constraint does along the extra freedoms of its leg."""
         for other, j, rows in self._extras():
-            if other is not leg:
+            if other is not leg or leg.g.same_freedom(j)[0]:
                 continue
             work = Dot(left_out.force, leg.motion.v[j])
             if leg.g.turns(j):

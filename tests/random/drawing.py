@@ -196,6 +196,7 @@ class _Drawing:
         else:
             missing = int(rng.choice(4, p=[0.7, 0.16, 0.09, 0.05]))
             extras = int(rng.choice(3, p=[0.76, 0.19, 0.05]))
+            extras = min(extras, 6 - max(1, needed - missing))
         length = max(1, needed - missing) + extras
         joints = self._joints(length)
         for index in rng.permutation(length)[:extras]:

@@ -109,7 +109,8 @@ def built(
             end = replace(end, rotation=matrix3(to_platform.T))
         elif end.axis_link is not None:
             end = replace(end, axis_platform=vector3(to_platform @ np.array(end.axis_link)))
-        base = place + turn @ np.array(leg.platform_point) - last.origin.value
+        tip = last.origin.value + last.rotation.value @ np.array(end.offset)
+        base = place + turn @ np.array(leg.platform_point) - tip
         legs.append(replace(leg, base_point=vector3(base), platform_joint=end))
     return replace(empty, legs=tuple(legs))
 
@@ -162,7 +163,31 @@ def planar_leg_in_space() -> Manipulator:
     return built(Space.SPATIAL, [keeps, free], [[0.3, 0.6], [0.3, 0.2, 0.6]], pose)
 
 
+def rollers() -> Manipulator:
+    """Four driven planar legs, each with a roller about its elbow: more drives than needed."""
+    chain = (joint(R, Z, driven=True), joint(R, Z, (0.4, 0.0, 0.0)))
+    passive = replace(joint(R, Z), extra=True)
+    seats = [(0.1, 0.1, 0.0), (-0.1, 0.1, 0.0), (-0.1, -0.2, 0.0), (0.2, -0.1, 0.0)]
+    arms = [arm([*chain, passive], REVOLUTE, Z, turned(0.0, 0.0, 1.3 * k), seats[k])
+            for k in range(4)]  # fmt: skip
+    offset = replace(arms[0].platform_joint, offset=(0.3, 0.1, 0.0), axis_link=None)
+    arms = [replace(one, platform_joint=offset) for one in arms]
+    q = [[0.3, 0.8 + 0.1 * k, 0.4] for k in range(4)]
+    made = built(Space.PLANAR, arms, q, np.array([0.1, 0.2, 0.1, 0.4, 0.4, 0.4, 0.4]))
+    legs = tuple(
+        replace(leg, joints=tuple(replace(one, link=flat(one.link)) for one in leg.joints))
+        for leg in made.legs
+    )
+    return replace(made, legs=legs, platform=flat(made.platform), gravity=(1.0, -9.0, 0.0))
+
+
+def flat(body: Body) -> Body:
+    """The body with its centre of mass in the plane."""
+    return replace(body, centre_of_mass=(*body.centre_of_mass[:2], 0.0))
+
+
 BUILT = {
+    "rollers": rollers(),
     "wrist": wrist(X, Z, (0.1, 0.2, -0.1)),
     "wrist at the origin": wrist(X, Z, ZERO3),
     "wrist with tilted axes": wrist(TILTED, FLAT, (0.1, 0.2, -0.1)),

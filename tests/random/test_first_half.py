@@ -1,0 +1,17 @@
+"""Random mechanisms against the independent projection: the first half, for one worker."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.random.cases import FIRST, check_breadth, judged
+
+
+@pytest.mark.parametrize("seed", FIRST)
+def test_right_or_refused_for_a_reason(seed: int) -> None:
+    found = judged(seed)
+    assert not found.problem, found
+
+
+def test_everything_occurs() -> None:
+    check_breadth(FIRST)
