@@ -1,4 +1,4 @@
-/* Time of the generated C per state; built by c_speed.py with MODEL and UPPER defined.
+/* Time of the generated C per state; built by c_speed.py with MODEL, UPPER, LAMBDA, ITERATED defined.
  *
  * Arguments: number of rounds (the best counts), and optionally the one function to run once
  * over all states, for counting instructions. */
@@ -31,46 +31,52 @@ static FN(model) model;
 #define MOTION(k) A[k]
 #endif
 
+#if ITERATED
+#define POSE(k) X[k], NULL  /* displacements iterated from home */
+#else
+#define POSE(k) X[k]
+#endif
+
 static size_t inverse_dynamics(void)
 {
     size_t failed = 0;
     for (size_t k = 0; k < STATES; ++k) {
-        failed += FN(inverse_dynamics)(&model, X[k], V[k], A[k], NULL, FORCES(k)) != 0;
+        failed += FN(inverse_dynamics)(&model, POSE(k), V[k], A[k], NULL, FORCES(k)) != 0;
     }
     return failed;
 }
 
 static size_t inverse_dynamics_batch(void)
 {
-    return FN(inverse_dynamics_batch)(&model, STATES, X[0], V[0], A[0], NULL, FORCES(0), NULL);
+    return FN(inverse_dynamics_batch)(&model, STATES, POSE(0), V[0], A[0], NULL, FORCES(0), NULL);
 }
 
 static size_t dynamics(void)
 {
     size_t failed = 0;
     for (size_t k = 0; k < STATES; ++k) {
-        failed += FN(dynamics)(&model, X[k], V[k], M[k], Z[k], H[k]) != 0;
+        failed += FN(dynamics)(&model, POSE(k), V[k], M[k], Z[k], H[k]) != 0;
     }
     return failed;
 }
 
 static size_t dynamics_batch(void)
 {
-    return FN(dynamics_batch)(&model, STATES, X[0], V[0], M[0], Z[0], H[0], NULL);
+    return FN(dynamics_batch)(&model, STATES, POSE(0), V[0], M[0], Z[0], H[0], NULL);
 }
 
 static size_t forward_dynamics(void)
 {
     size_t failed = 0;
     for (size_t k = 0; k < STATES; ++k) {
-        failed += FN(forward_dynamics)(&model, X[k], V[k], tau[k], NULL, MOTION(k)) != 0;
+        failed += FN(forward_dynamics)(&model, POSE(k), V[k], tau[k], NULL, MOTION(k)) != 0;
     }
     return failed;
 }
 
 static size_t forward_dynamics_batch(void)
 {
-    return FN(forward_dynamics_batch)(&model, STATES, X[0], V[0], tau[0], NULL, MOTION(0), NULL);
+    return FN(forward_dynamics_batch)(&model, STATES, POSE(0), V[0], tau[0], NULL, MOTION(0), NULL);
 }
 
 static const struct {

@@ -18,6 +18,7 @@ sys.path.insert(0, str(ROOT))
 
 from pne_sym import manipulators  # noqa: E402  (the package is found from here)
 from pne_sym.backends.c_backend import CBackend  # noqa: E402
+from pne_sym.backends.describe import describe  # noqa: E402
 from pne_sym.pipeline import compile_bundle  # noqa: E402
 
 STATES = 1024
@@ -32,7 +33,8 @@ FLAGS = {
 def build(folder: Path, name: str, options: argparse.Namespace, flags: str) -> Path:
     """The benchmark as a program."""
     program = folder / "speed"
-    defines = [f"-DMODEL={name}", f"-DUPPER={name.upper()}", f"-DLAMBDA={options.multipliers}"]
+    defines = [f"-DMODEL={name}", f"-DUPPER={name.upper()}"]
+    defines += [f"-DLAMBDA={options.multipliers}", f"-DITERATED={options.iterated}"]
     real = f"-D{name.upper()}_REAL={options.real}"
     sources = [str(ROOT / "bench" / "c_speed.c"), str(folder / f"{name}.c")]
     subprocess.run(
@@ -72,6 +74,7 @@ def main() -> None:
     options = parser.parse_args()
     bundle = compile_bundle(manipulators.load(options.model))
     options.multipliers = int(bundle.coordinates.sizes["NC"] > 0)
+    options.iterated = int(describe(bundle).is_numeric)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         for file, text in CBackend().emit(bundle).items():
