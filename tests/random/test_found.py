@@ -205,8 +205,9 @@ def test_built(name: str) -> None:
 
 @pytest.mark.parametrize("name", BUILT)
 def test_only_wrenches_that_act_are_constraints(name: str) -> None:
-    found = derive(BUILT[name]).coordinates.sizes["NC"]
-    assert found == CONSTRAINTS.get(name, 0) == mobility(BUILT[name]).constraints
+    coordinates = derive(BUILT[name]).coordinates
+    assert coordinates is not None
+    assert coordinates.sizes["NC"] == CONSTRAINTS.get(name, 0) == mobility(BUILT[name]).constraints
 
 
 def test_a_singular_leg_that_transmits_moments_is_refused() -> None:

@@ -46,11 +46,14 @@ ACCEPTED: dict[str, tuple[str, list[str]]] = {
     "spatial, four joints at R": ("spatial", ["Rz* Ry Px* Rx | R", *[_UPS] * 3]),
     "spatial, five joints at rigid": ("spatial", ["Rz* Ry Px* Rx Ry | rigid", *[_UPS] * 3]),
     "translational U, freedoms left out": ("translational", ["Rz* Ry | U", _UPS, _UPS]),
-    "translational R, freedoms left out": ("translational", ["Rz* Ry Px | R", _UPS, _UPS]),
-    "translational rigid, freedoms left out": ("translational", ["Rz* Ry Px | rigid", _UPS, _UPS]),
+    "translational R, freedoms left out": ("translational", ["Px* Py* Pz* | R"]),
+    "translational rigid, freedoms left out": (
+        "translational",
+        ["Px* Py* Pz | rigid", "Px Py Pz* | rigid"],
+    ),
     "spherical U, freedoms left out": ("spherical", ["Rz* Ry | U", _UPS, _UPS]),
     "spherical R, freedoms left out": ("spherical", ["Rz* Ry Px | R", _UPS, _UPS]),
-    "spherical rigid, freedoms left out": ("spherical", ["Rz* Ry Px | rigid", _UPS, _UPS]),
+    "spherical rigid, freedoms left out": ("spherical", ["Rz0* Ry0* Rx* | rigid"]),
 }
 """Space and platform joint -> legs."""
 
