@@ -47,6 +47,22 @@ class Guard:
     equation: str
 
 
+@dataclass(frozen=True)
+class Undone:
+    """What a rollback has forgotten.
+
+    Attributes:
+        statements, guards: as they were.
+        values: expressions and the atoms that had their values.
+        issues: per statement its hint, the number issued before it, and the last one.
+    """
+
+    statements: list[Statement]
+    values: list[tuple[Any, Atom]]
+    guards: list[Guard]
+    issues: list[tuple[str, int, int]]
+
+
 class Builder:
     """Statements in the order of their making."""
 
@@ -325,20 +341,42 @@ class Builder:
         """A point to return to."""
         return len(self.statements), len(self._made), len(self.guards)
 
-    def rollback(self, mark: tuple[int, int, int]) -> None:
-        """Forget all that was made since the mark."""
+    def rollback(self, mark: tuple[int, int, int]) -> Undone:
+        """Forget all that was made since the mark; what was forgotten, for `redo`."""
         statements, made, guards = mark
-        for statement in self.statements[statements:]:
+        forgotten = Undone(
+            self.statements[statements:],
+            [(key, self._value[key]) for key in self._made[made:]],
+            self.guards[guards:],
+            [(hint, before, self._issued[hint]) for hint, before in self._issues[statements:]],
+        )
+        for statement in forgotten.statements:
             del self.of[statement.target], self._stage[statement.target]
             self._names.discard(statement.target.name)
-        for hint, before in reversed(self._issues[statements:]):
+        for hint, before, _ in reversed(forgotten.issues):
             self._issued[hint] = before
+        for key, _ in forgotten.values:
+            del self._value[key]
         del self._issues[statements:]
         del self.statements[statements:]
-        for key in self._made[made:]:
-            del self._value[key]
         del self._made[made:]
         del self.guards[guards:]
+        return forgotten
+
+    def redo(self, forgotten: Undone) -> None:
+        """Make again what a rollback to the present point has forgotten."""
+        for statement in forgotten.statements:
+            self.of[statement.target] = statement
+            self._stage[statement.target] = statement.stage
+            self._names.add(statement.target.name)
+        self.statements += forgotten.statements
+        for key, value in forgotten.values:
+            self._value[key] = value
+            self._made.append(key)
+        self.guards += forgotten.guards
+        for hint, before, after in forgotten.issues:
+            self._issues.append((hint, before))
+            self._issued[hint] = after
 
     def cost(self, atoms: Iterable[Atom]) -> int:
         """Run-time operations needed for the atoms beyond what is live already."""

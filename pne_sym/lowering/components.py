@@ -9,13 +9,14 @@ of an equation the cheapest is taken.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, names_in
-from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.builder import Atom, Builder, Undone
 from pne_sym.lowering.frames import ConstantStep, Frames, Triple
 from pne_sym.lowering.solve import Screws, solve, solve_transposed
 from pne_sym.vector import nodes as n
@@ -27,6 +28,23 @@ _XYZ = "xyz"
 
 class _NotYetError(Exception):
     """A value is asked for while it is being made: this way around does not lead there."""
+
+
+@dataclass(frozen=True)
+class _Trial:
+    """A value made on trial.
+
+    Attributes:
+        cost: run-time operations beyond what is live.
+        value: its components.
+        stored: entries of tables that were made with it.
+        forgotten: statements that were.
+    """
+
+    cost: float
+    value: Any
+    stored: list[tuple[dict[Any, Any], Any, Any]]
+    forgotten: Undone
 
 
 class Lowering:
@@ -79,8 +97,8 @@ class Lowering:
         self._undo.append((table, key))
         return value
 
-    def _attempt(self, make: Callable[[], Any]) -> tuple[float, Any]:
-        """Cost of making a value, infinite if it needs what is not known yet; nothing stays."""
+    def _attempt(self, make: Callable[[], Any]) -> _Trial:
+        """Make a value and forget it; its cost is infinite if it needs what is not known yet."""
         mark, undo, equation = self.b.mark(), len(self._undo), self.b.equation
         depth, self._depth = self._depth, self._depth + 1
         value: Any = None
@@ -91,21 +109,34 @@ class Lowering:
         except _NotYetError:
             pass
         self._depth = depth
-        for table, key in self._undo[undo:]:
+        stored = [(table, key, table.get(key)) for table, key in self._undo[undo:]]
+        for table, key, _ in stored:
             table.pop(key, None)
         del self._undo[undo:]
-        self.b.rollback(mark)
+        forgotten = self.b.rollback(mark)
         self.b.equation = equation
-        return cost, value
+        return _Trial(cost, value, stored, forgotten)
+
+    def _adopt(self, trial: _Trial) -> Any:
+        """The value of a trial, made for good: nothing may have been made since."""
+        self.b.redo(trial.forgotten)
+        for table, key, value in trial.stored:
+            self._store(table, key, value)
+        return trial.value
 
     def cheapest(self, makers: Sequence[Callable[[], Any]]) -> Any:
         """The value of the cheapest way; ties go to the first."""
         if len(makers) == 1:
             return makers[0]()
-        if self._depth >= _MAX_TRIAL_DEPTH:
-            return next((m for m in makers if self._attempt(m)[0] < float("inf")), makers[0])()
-        costs = [self._attempt(make)[0] for make in makers]
-        return makers[costs.index(min(costs))]()
+        if self._depth < _MAX_TRIAL_DEPTH:
+            costs = [self._attempt(make).cost for make in makers]
+            # Made anew: its own choices are then tried as deep as this one.
+            return makers[costs.index(min(costs))]()
+        for make in makers:
+            trial = self._attempt(make)
+            if trial.cost < float("inf"):
+                return self._adopt(trial)
+        return makers[0]()
 
     # ---- named quantities --------------------------------------------------------------
 
@@ -176,7 +207,7 @@ class Lowering:
         if body is not None:
             return body
         frames = self._frames_of(forms[0])
-        costs = [self._attempt(partial(self._any, forms[0], f))[0] for f in frames]
+        costs = [self._attempt(partial(self._any, forms[0], f)).cost for f in frames]
         return frames[costs.index(min(costs))]
 
     def _all(self, vectors: Sequence[Any], frame: str) -> list[Triple]:
@@ -485,9 +516,9 @@ class Lowering:
                 self.ensure(getattr(vector, "name", ""))
             costs = []
             for frame in basis.frames:
-                cost, columns = self._attempt(partial(self._all, basis.vectors, frame))
-                nonzero = sum(c not in (0, 1, -1) for column in columns for c in column)
-                costs.append((nonzero, cost))
+                trial = self._attempt(partial(self._all, basis.vectors, frame))
+                nonzero = sum(c not in (0, 1, -1) for column in trial.value for c in column)
+                costs.append((nonzero, trial.cost))
             self._basis_frame[id(basis)] = basis.frames[costs.index(min(costs))]
         return self._basis_frame[id(basis)]
 

@@ -107,13 +107,14 @@ def _cheapest_stores(
         return builder.cost([s.value for found in stores.values() for _, s in found]), stores
 
     mark = builder.mark()
-    step_cost, _ = run(columns=False)
+    step_cost, by_steps = run(columns=False)
+    forgotten = builder.rollback(mark)
+    column_cost, by_columns = run(columns=True)
+    if column_cost < step_cost:
+        return by_columns
     builder.rollback(mark)
-    column_cost, stores = run(columns=True)
-    if step_cost <= column_cost:
-        builder.rollback(mark)
-        _, stores = run(columns=False)
-    return stores
+    builder.redo(forgotten)
+    return by_steps
 
 
 def _declare(derivation: Derivation, builder: Builder) -> None:
