@@ -140,6 +140,11 @@ class Lowering:
 
     # ---- named quantities --------------------------------------------------------------
 
+    def equation_of(self, expr: Any) -> str:
+        """Id of the equation to which an expression belongs: its latest name's."""
+        ids = [e.id for name, e in self.definition.items() if name in names_in(expr)]
+        return ids[-1] if ids else ""
+
     def ensure(self, name: str) -> None:
         """Lower a name's definition in its home frame, and what it needs before it."""
         if name in self.home or name in self._scalars or name not in self.definition:

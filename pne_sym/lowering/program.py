@@ -156,6 +156,7 @@ def _declare_state(builder: Builder, components: Iterable[Any]) -> None:
 def _stores(lowering: Lowering, output: Output) -> list[tuple[Stage, Store]]:
     """Entries of an output array with the atoms that go there."""
     value, b = output.value, lowering.b
+    b.equation = lowering.equation_of(value)
     components: dict[tuple[int, int], Atom]
     if isinstance(value, Tensor):
         t = lowering.tensor(value, output.frame)

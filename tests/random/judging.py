@@ -287,12 +287,15 @@ def _determined(manipulator: Manipulator, state: Result) -> bool:
 
 
 def _open(state: Result, passive: list[int]) -> bool:
-    """Whether forces that act on passive coordinates are open: redundant or too few drives."""
+    """Whether the forces of drives and constraints are open: redundant or too few drives.
+
+    Where by structure they act on passive coordinates, these are open then too, even if at this
+    geometry the action happens to vanish, as about the common centre of a wrist.
+    """
     drives = np.hstack([state.H, state.Hk])
     reached = np.abs(drives).max(axis=1) > RANK_TOLERANCE
-    coupled = bool(reached[passive].any())
     others = [row for row in np.flatnonzero(reached) if row not in passive]
-    return coupled and len(others) != drives.shape[1]
+    return len(others) != drives.shape[1]
 
 
 def _forward(manipulator: Manipulator, ours: Result, state: State) -> Array:

@@ -127,7 +127,7 @@ def test_file_is_written_once(tmp_path: Path) -> None:
         ("lambda.toml", "3-RPR", "'lambda' is a Python keyword"),
         ("check.toml", "3-RPR", "'check' is a command of pne-gen"),
         ("no/such/my_robot.toml", "3-RPR", "cannot be written: No such file or directory"),
-        ("my_robot.toml", "3-RPU", "expected legs that"),
+        ("my_robot.toml", "3-RPQ", "joint 'Q' in '3-RPQ'"),
     ],
 )
 def test_nothing_is_written_on_refusal(name: str, legs: str, message: str, tmp_path: Path) -> None:
