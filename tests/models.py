@@ -27,6 +27,7 @@ from pne_sym.backends.numpy_backend import NumpyBackend
 from pne_sym.mechanics.derive import derive
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
+from pne_sym.model.reader import from_text
 from pne_sym.pipeline import compile_bundle
 from tests.oracle.specs import State, random_state, randomise
 
@@ -104,6 +105,13 @@ def manifest(manipulator: Manipulator) -> dict[str, Any]:
     """The manifest, as a program would read it."""
     data: dict[str, Any] = json.loads(texts(manipulator)[1])
     return data
+
+
+@cache
+def drawn(file: str) -> Manipulator:
+    """A manipulator that was drawn at random and kept in tests/data/drawn."""
+    text = (_ROOT / f"tests/data/drawn/{file}.json").read_text(encoding="utf-8")
+    return from_text(text, ".json", file)
 
 
 @cache

@@ -141,9 +141,13 @@ class Lowering:
     # ---- named quantities --------------------------------------------------------------
 
     def equation_of(self, expr: Any) -> str:
-        """Id of the equation to which an expression belongs: its latest name's."""
-        ids = [e.id for name, e in self.definition.items() if name in names_in(expr)]
-        return ids[-1] if ids else ""
+        """Id of the equation to which an expression belongs: its latest name's.
+
+        What is made of given quantities alone belongs to the last equation of all.
+        """
+        names = names_in(expr)
+        ids = [e.id for name, e in self.definition.items() if name in names]
+        return ids[-1] if ids else list(self.definition.values())[-1].id
 
     def ensure(self, name: str) -> None:
         """Lower a name's definition in its home frame, and what it needs before it."""

@@ -1,6 +1,6 @@
 """Displacements found by iteration: C agrees with NumPy, and tells what went wrong.
 
-The mechanisms are drawn at random; the seeds are chosen for their structure.
+The mechanisms were drawn at random and kept, chosen for their structure.
 """
 
 from __future__ import annotations
@@ -16,17 +16,23 @@ from pne_sym.model.manipulator import Manipulator
 from tests import models
 from tests.backends.c_agreement import assert_agree, vectors
 from tests.backends.c_library import INVALID, NOT_CONVERGED, OK, SINGULAR, Array, CLibrary
-from tests.random.drawing import draw
 
 STATES = 11  # a lane of 8 states, and a remainder
 QUICK = ("-O0",)
 STRUCTURES = {
-    # seed: legs; (rows, unknowns) of the closure, closed legs too?, constraints, redundant, extras
-    224: ("planar, 3 RRR", (2, 2), False, 0, False, 3),
-    80: ("point, 4 RRR, redundant drives", (2, 2), False, 0, True, 4),
-    13: ("spherical, 2 CRP, redundant drives", (3, 3), False, 0, True, 2),
-    56: ("translational, PPRH-U and RR", (4, 4), True, 1, True, 0),
-    447: ("spatial, 2 RR and 2 HR: fewer unknowns than conditions", (3, 2), True, 4, False, 0),
+    # file: legs; (rows, unknowns) of the closure, closed legs too?, constraints, redundant, extras
+    "planar_3rrr": ("planar, 3 RRR", (2, 2), False, 0, False, 3),
+    "point_4rrr_redundant": ("point, 4 RRR, redundant drives", (2, 2), False, 0, True, 4),
+    "spherical_2crp_redundant": ("spherical, 2 CRP, redundant drives", (3, 3), False, 0, True, 2),
+    "translational_pprhu_rr": ("translational, PPRH-U and RR", (4, 4), True, 1, True, 0),
+    "spatial_2rr_2hr": (
+        "2 RR and 2 HR, fewer unknowns than rows",
+        (3, 2),
+        True,
+        4,
+        False,
+        0,
+    ),
 }
 
 
@@ -38,11 +44,11 @@ def near_home(manipulator: Manipulator, count: int) -> dict[str, Array]:
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("seed", STRUCTURES)
-def test_agreement(seed: int, tmp_path: Path) -> None:
-    manipulator = draw(seed, light=True)
+@pytest.mark.parametrize("file", STRUCTURES)
+def test_agreement(file: str, tmp_path: Path) -> None:
+    manipulator = models.drawn(file)
     bundle = models.bundle(manipulator)
-    _, shape, mixed, constraints, redundant, extras = STRUCTURES[seed]
+    _, shape, mixed, constraints, redundant, extras = STRUCTURES[file]
     d, types = describe(bundle), bundle.derivation.leg_types
     iterated = next(t for t in types if not t.is_closed)
     assert (bundle.program.shapes[f"gap_{iterated.name}"][1], iterated.unknowns) == shape
@@ -56,7 +62,7 @@ def test_agreement(seed: int, tmp_path: Path) -> None:
 
 @pytest.fixture(scope="module")
 def planar() -> Manipulator:
-    return draw(224, light=True)
+    return models.drawn("planar_3rrr")
 
 
 @pytest.fixture(scope="module")
@@ -131,7 +137,7 @@ def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Pa
 
     With two, the forces on the rows of these coordinates are open.
     """
-    drawn = draw(111, light=True)
+    drawn = models.drawn("planar_3rrp_extra")
     legs = tuple(
         replace(leg, joints=(leg.joints[0], replace(leg.joints[1], actuated=False), leg.joints[2]))
         for leg in drawn.legs
@@ -153,7 +159,7 @@ def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Pa
 
 def test_fewer_drives_than_freedoms(tmp_path: Path) -> None:
     """No forces give any acceleration; everything else is as with more drives."""
-    manipulator = draw(117, light=True)
+    manipulator = models.drawn("spherical_too_few_drives")
     assert describe(models.bundle(manipulator)).is_underdriven
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
     given, module = near_home(manipulator, STATES), models.module(manipulator)

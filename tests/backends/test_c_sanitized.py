@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
+from pne_sym import manipulators
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_api import Api, api_table
 from pne_sym.backends.describe import describe
 from tests import models
 from tests.backends.c_library import find_compiler, run, write_sources
-from tests.random.drawing import draw
 
 FLAGS = ("-std=c99", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 STATES = 9  # a lane of 8 states, and a remainder
@@ -68,11 +68,10 @@ def caller(bundle: Bundle, api: Api) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-@pytest.mark.parametrize("which", ["tripod_3rps", "fivebar_redundant", 80])
-def test_sanitized(which: str | int, tmp_path: Path) -> None:
+@pytest.mark.parametrize("which", ["tripod_3rps", "fivebar_redundant", "point_4rrr_redundant"])
+def test_sanitized(which: str, tmp_path: Path) -> None:
     """Constrained, redundantly driven; iterated with extra coordinates and redundant."""
-    named = isinstance(which, str)
-    manipulator = models.catalogue(str(which)) if named else draw(int(which), light=True)
+    manipulator = (models.catalogue if which in manipulators.names() else models.drawn)(which)
     bundle = models.bundle(manipulator)
     table = api_table(bundle, describe(bundle))
     source, program = write_sources(bundle, tmp_path), tmp_path / "program"
