@@ -16,8 +16,8 @@ KATEX := tests/tools/katex
 # The models that stand in generated/; `all` for the whole catalogue.
 MODELS ?= all
 DOCUMENTS = $(wildcard README.md docs/*.md generated/*/*.md)
-# Two workers; tests of one catalogue entry, or of one file, stay together (tests/conftest.py).
-PYTEST_ARGS ?= -n 2 --dist loadgroup
+# Two workers, a file each at a time: models are compiled once per file.
+PYTEST_ARGS ?= -n 2 --dist loadfile
 
 # Mechanisms drawn at random by `make random`: how many, and the first seed.
 RANDOM_COUNT ?= 600

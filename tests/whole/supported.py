@@ -8,11 +8,8 @@ SUPPORTED = manipulators.names()
 
 SAMPLE = (
     "fivebar_offset",
-    "hexapod_6ucu",
     "hybrid_3prps",
-    "planar_mixed",
     "spherical_3ups",
-    "stewart",
     "tripod_3rps",
 )
 """One of each kind, where all would take long."""
