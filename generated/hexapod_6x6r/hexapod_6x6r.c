@@ -683,16 +683,11 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         /* (rrrrrr-N43) first moment of the links from 3 outwards */
         const real hc_3_x = h_3_x + h_4_x + rrrrrr_joint4_offset_x*rrrrrr_link4_mass;
         /* (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_t = R(0.5)*rrrrrr_link3_mass;
-        const real Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + Jc_3_t);
+        const real Jc_2_t = rrrrrr_joint3_offset_x*(Jc_3_t + R(0.5)*rrrrrr_link3_mass);
         /* (rrrrrr-G4) first moment of link 2 about the origin of link 2 */
         const real h_2_x = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_mass;
         const real h_2_y = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass;
         const real h_2_z = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass;
-        /* (rrrrrr-N52) first moment of the links from 2 outwards */
-        const real hc_2_t = rrrrrr_joint3_offset_x*(rrrrrr_link3_mass + rrrrrr_link4_mass);
-        /* (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t = rrrrrr_joint2_offset_x*(Jc_2_t + Jc_3_t + R(0.5)*rrrrrr_link2_mass);
         /* (rrrrrr-G11) first moment of link 5 about the connection point */
         const real h_5_x = rho_tip_5_x*rrrrrr_link5_mass;
         const real h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass;
@@ -790,8 +785,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         model->J_5_yy[leg] = J_5_yy;
         model->J_5_yz[leg] = J_5_yz;
         model->J_5_zz[leg] = J_5_zz;
-        model->Jc_1_t[leg] = Jc_1_t;
-        model->Jc_2_t_2[leg] = Jc_2_t_2;
+        model->Jc_2_t[leg] = Jc_2_t;
         model->Jc_3_t_2[leg] = Jc_3_t_2;
         model->Jc_3_t_3[leg] = Jc_3_t_3;
         model->Jc_4_xx[leg] = Jc_4_xx;
@@ -828,7 +822,6 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         model->h_5_x[leg] = h_5_x;
         model->h_5_y[leg] = h_5_y;
         model->h_5_z[leg] = h_5_z;
-        model->hc_2_t[leg] = hc_2_t;
         model->hc_3_x[leg] = hc_3_x;
         model->rrrrrr_base_frame_xx[leg] = rrrrrr_base_frame_xx;
         model->rrrrrr_base_frame_xy[leg] = rrrrrr_base_frame_xy;
@@ -1651,7 +1644,7 @@ static void close_loops(const prepared *m, size_t w, const real *X, const real *
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 10767 mul, 8223 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
+/* ---- dynamics: 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
 typedef struct {
     real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
         R_zy[LANES], R_zz[LANES], t_dot_x[LANES], t_dot_y[LANES], t_dot_z[LANES], omega_x[LANES],
@@ -1856,8 +1849,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real J_5_yy = m->J_5_yy[i];
         const real J_5_yz = m->J_5_yz[i];
         const real J_5_zz = m->J_5_zz[i];
-        const real Jc_1_t = m->Jc_1_t[i];
-        const real Jc_2_t_2 = m->Jc_2_t_2[i];
+        const real Jc_2_t = m->Jc_2_t[i];
         const real Jc_3_t_2 = m->Jc_3_t_2[i];
         const real Jc_3_t_3 = m->Jc_3_t_3[i];
         const real Jc_4_xx = m->Jc_4_xx[i];
@@ -1890,7 +1882,6 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real h_5_x = m->h_5_x[i];
         const real h_5_y = m->h_5_y[i];
         const real h_5_z = m->h_5_z[i];
-        const real hc_2_t = m->hc_2_t[i];
         const real hc_3_x = m->hc_3_x[i];
         const real rrrrrr_base_frame_xx = m->rrrrrr_base_frame_xx[i];
         const real rrrrrr_base_frame_xy = m->rrrrrr_base_frame_xy[i];
@@ -2094,21 +2085,16 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3;
         const real hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3;
         /* (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_t = rrrrrr_joint3_offset_x*(Jc_2_t_2 + hc_3_r0_x);
-        const real Jc_2_t_3 = 2*Jc_2_t;
+        const real Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x);
+        const real Jc_2_t_3 = 2*Jc_2_t_2;
         const real Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x;
         const real Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz;
-        /* (rrrrrr-N52) first moment of the links from 2 outwards */
-        const real hc_2_x = h_2_x + hc_2_t + hc_3_r0_x;
-        const real hc_2_y = h_2_y + hc_3_r0_y;
-        /* (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2 */
         const real _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz +
             _y_3);
-        const real _y_5 = s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2*Jc_2_t - _x_8*s_3) -
+        const real _y_5 = s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2*Jc_2_t_2 - _x_8*s_3) -
             Jc_2_xy*c_2_t) - c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 +
             Jc_3_yy*c_3) + s_3*(Jc_3_t_6 + Jc_3_xx*s_3)));
         /* (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t_2 = rrrrrr_joint2_offset_x*(Jc_1_t + hc_2_x*s_2 - c_2_t*hc_2_y);
         const real Jc_1_zz = J_1_xx + _y_5;
         /* (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit */
         const real L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x;
@@ -3416,7 +3402,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 7293 mul, 5319 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
+/* ---- M: 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig, every leg counted ---- */
 typedef struct {
     real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
         R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES], h_star_in_base_y[LANES],
@@ -3551,13 +3537,10 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real J_5_yy = m->J_5_yy[i];
         const real J_5_yz = m->J_5_yz[i];
         const real J_5_zz = m->J_5_zz[i];
-        const real Jc_1_t = m->Jc_1_t[i];
-        const real Jc_2_t_2 = m->Jc_2_t_2[i];
+        const real Jc_2_t = m->Jc_2_t[i];
         const real Jc_3_t_2 = m->Jc_3_t_2[i];
         const real Jc_3_t_3 = m->Jc_3_t_3[i];
         const real Jc_4_xx = m->Jc_4_xx[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
         const real h_4_y = m->h_4_y[i];
@@ -3565,7 +3548,6 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real h_5_x = m->h_5_x[i];
         const real h_5_y = m->h_5_y[i];
         const real h_5_z = m->h_5_z[i];
-        const real hc_2_t = m->hc_2_t[i];
         const real hc_3_x = m->hc_3_x[i];
         const real rrrrrr_base_frame_xx = m->rrrrrr_base_frame_xx[i];
         const real rrrrrr_base_frame_xy = m->rrrrrr_base_frame_xy[i];
@@ -3767,21 +3749,16 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3;
         const real hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3;
         /* (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_t = rrrrrr_joint3_offset_x*(Jc_2_t_2 + hc_3_r0_x);
-        const real Jc_2_t_3 = 2*Jc_2_t;
+        const real Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x);
+        const real Jc_2_t_3 = 2*Jc_2_t_2;
         const real Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x;
         const real Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz;
-        /* (rrrrrr-N52) first moment of the links from 2 outwards */
-        const real hc_2_x = h_2_x + hc_2_t + hc_3_r0_x;
-        const real hc_2_y = h_2_y + hc_3_r0_y;
-        /* (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2 */
         const real _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz +
             _y_3);
-        const real _y_5 = s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2*Jc_2_t - _x_8*s_3) -
+        const real _y_5 = s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2*Jc_2_t_2 - _x_8*s_3) -
             Jc_2_xy*c_2_t) - c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 +
             Jc_3_yy*c_3) + s_3*(Jc_3_t_6 + Jc_3_xx*s_3)));
         /* (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t_2 = rrrrrr_joint2_offset_x*(Jc_1_t + hc_2_x*s_2 - c_2_t*hc_2_y);
         const real Jc_1_zz = J_1_xx + _y_5;
         /* (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit */
         const real L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x;

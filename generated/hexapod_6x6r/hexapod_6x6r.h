@@ -125,22 +125,22 @@ typedef struct {
     hexapod_6x6r_real J_1_xx[6], J_2_xx[6], J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6],
             J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], J_4_xx[6], J_4_xy[6],
             J_4_xz[6], J_4_yy[6], J_4_yz[6], J_5_xx[6], J_5_xy[6], J_5_xz[6], J_5_yy[6], J_5_yz[6],
-            J_5_zz[6], Jc_1_t[6], Jc_2_t_2[6], Jc_3_t_2[6], Jc_3_t_3[6], Jc_4_xx[6], Sigma_2_xx[6],
-            Sigma_2_yy[6], Sigma_2_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], Sigma_4_xx[6],
-            Sigma_4_yy[6], Sigma_4_zz[6], Sigma_5_xx[6], Sigma_5_yy[6], Sigma_5_zz[6], b_r0_x[6],
-            b_r0_y[6], b_r0_z[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6], h_1_z[6],
-            h_2_x[6], h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6],
-            h_5_x[6], h_5_y[6], h_5_z[6], hc_2_t[6], hc_3_x[6], rrrrrr_base_frame_xx[6],
-            rrrrrr_base_frame_xy[6], rrrrrr_base_frame_xz[6], rrrrrr_base_frame_yx[6],
-            rrrrrr_base_frame_yy[6], rrrrrr_base_frame_yz[6], rrrrrr_base_frame_zx[6],
-            rrrrrr_base_frame_zy[6], rrrrrr_base_frame_zz[6], rrrrrr_base_point_x[6],
-            rrrrrr_base_point_y[6], rrrrrr_base_point_z[6], rrrrrr_joint2_offset_x[6],
-            rrrrrr_joint3_offset_x[6], rrrrrr_joint4_offset_x[6], rrrrrr_joint5_offset_x[6],
-            rrrrrr_link1_mass[6], rrrrrr_link2_mass[6], rrrrrr_link3_mass[6], rrrrrr_link4_mass[6],
-            rrrrrr_link5_mass[6], rrrrrr_platform_joint_axis_platform_x[6],
-            rrrrrr_platform_joint_axis_platform_y[6], rrrrrr_platform_joint_axis_platform_z[6],
-            rrrrrr_platform_joint_offset_x[6], rrrrrr_platform_point_x[6], rrrrrr_platform_point_y[6],
-            rrrrrr_platform_point_z[6], size_[6], size_t_2[6];
+            J_5_zz[6], Jc_2_t[6], Jc_3_t_2[6], Jc_3_t_3[6], Jc_4_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
+            Sigma_2_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], Sigma_4_xx[6], Sigma_4_yy[6],
+            Sigma_4_zz[6], Sigma_5_xx[6], Sigma_5_yy[6], Sigma_5_zz[6], b_r0_x[6], b_r0_y[6],
+            b_r0_z[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6], h_1_z[6], h_2_x[6],
+            h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6], h_5_x[6],
+            h_5_y[6], h_5_z[6], hc_3_x[6], rrrrrr_base_frame_xx[6], rrrrrr_base_frame_xy[6],
+            rrrrrr_base_frame_xz[6], rrrrrr_base_frame_yx[6], rrrrrr_base_frame_yy[6],
+            rrrrrr_base_frame_yz[6], rrrrrr_base_frame_zx[6], rrrrrr_base_frame_zy[6],
+            rrrrrr_base_frame_zz[6], rrrrrr_base_point_x[6], rrrrrr_base_point_y[6],
+            rrrrrr_base_point_z[6], rrrrrr_joint2_offset_x[6], rrrrrr_joint3_offset_x[6],
+            rrrrrr_joint4_offset_x[6], rrrrrr_joint5_offset_x[6], rrrrrr_link1_mass[6],
+            rrrrrr_link2_mass[6], rrrrrr_link3_mass[6], rrrrrr_link4_mass[6], rrrrrr_link5_mass[6],
+            rrrrrr_platform_joint_axis_platform_x[6], rrrrrr_platform_joint_axis_platform_y[6],
+            rrrrrr_platform_joint_axis_platform_z[6], rrrrrr_platform_joint_offset_x[6],
+            rrrrrr_platform_point_x[6], rrrrrr_platform_point_y[6], rrrrrr_platform_point_z[6],
+            size_[6], size_t_2[6];
 } hexapod_6x6r_model;
 
 extern const hexapod_6x6r_params hexapod_6x6r_default_params;
@@ -152,7 +152,7 @@ extern const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ];
    model is all NaN. */
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model);
 
-/* Inertia matrix M. 7293 mul, 5319 add, 30 div, 30 sqrt, 60 trig. In: X (NQ), q0 (NJ, or NULL).
+/* Inertia matrix M. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig. In: X (NQ), q0 (NJ, or NULL).
    Out: M (NV x NV). */
 int hexapod_6x6r_M(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, hexapod_6x6r_real *M);
@@ -173,7 +173,7 @@ int hexapod_6x6r_H(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, 
 size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 10767 mul, 8223 add, 30 div, 30 sqrt, 60 trig. In: X
+/* M, Z and H together, sharing the work. 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig. In: X
    (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
@@ -216,7 +216,7 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 10767 mul, 8223 add, 30 div, 30
+/* Acceleration A under the actuator forces tau and the wrench. 10749 mul, 8193 add, 30 div, 30
    sqrt, 60 trig; the solution of the linear equations apart. In: X (NQ), q0 (NJ, or NULL), V
    (NV), tau (NU), wrench (NW, or NULL). Out: A (NV). */
 int hexapod_6x6r_forward_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,

@@ -618,16 +618,11 @@ def _prepare(p):
     # (rrrrrr-N43) first moment of the links from 3 outwards
     hc_3_x = h_3_x + h_4_x + rrrrrr_joint4_offset_x*rrrrrr_link4_mass
     # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_t = 0.5*rrrrrr_link3_mass
-    Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + Jc_3_t)
+    Jc_2_t = rrrrrr_joint3_offset_x*(Jc_3_t + 0.5*rrrrrr_link3_mass)
     # (rrrrrr-G4) first moment of link 2 about the origin of link 2
     h_2_x = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_mass
     h_2_y = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass
     h_2_z = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
-    # (rrrrrr-N52) first moment of the links from 2 outwards
-    hc_2_t = rrrrrr_joint3_offset_x*(rrrrrr_link3_mass + rrrrrr_link4_mass)
-    # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t = rrrrrr_joint2_offset_x*(Jc_2_t + Jc_3_t + 0.5*rrrrrr_link2_mass)
     # (rrrrrr-G11) first moment of link 5 about the connection point
     h_5_x = rho_tip_5_x*rrrrrr_link5_mass
     h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
@@ -790,8 +785,7 @@ def _prepare(p):
             "J_5_yy": np.broadcast_to(J_5_yy, _rrrrrr),
             "J_5_yz": np.broadcast_to(J_5_yz, _rrrrrr),
             "J_5_zz": np.broadcast_to(J_5_zz, _rrrrrr),
-            "Jc_1_t": np.broadcast_to(Jc_1_t, _rrrrrr),
-            "Jc_2_t_2": np.broadcast_to(Jc_2_t_2, _rrrrrr),
+            "Jc_2_t": np.broadcast_to(Jc_2_t, _rrrrrr),
             "Jc_3_t_2": np.broadcast_to(Jc_3_t_2, _rrrrrr),
             "Jc_3_t_3": np.broadcast_to(Jc_3_t_3, _rrrrrr),
             "Jc_4_xx": np.broadcast_to(Jc_4_xx, _rrrrrr),
@@ -828,7 +822,6 @@ def _prepare(p):
             "h_5_x": np.broadcast_to(h_5_x, _rrrrrr),
             "h_5_y": np.broadcast_to(h_5_y, _rrrrrr),
             "h_5_z": np.broadcast_to(h_5_z, _rrrrrr),
-            "hc_2_t": np.broadcast_to(hc_2_t, _rrrrrr),
             "hc_3_x": np.broadcast_to(hc_3_x, _rrrrrr),
             "rrrrrr_base_frame_xx": np.broadcast_to(rrrrrr_base_frame_xx, _rrrrrr),
             "rrrrrr_base_frame_xy": np.broadcast_to(rrrrrr_base_frame_xy, _rrrrrr),
@@ -1015,7 +1008,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 10767 mul, 8223 add, 30 div, 30 sqrt, 60 trig
+# dynamics: 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig
 def _dynamics_before(c, X, V, q, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -1121,14 +1114,14 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     (
     J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
         J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz, J_5_yy,
-        J_5_yz, J_5_zz, Jc_1_t, Jc_2_t_2, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, Sigma_2_xx, Sigma_2_yy,
-        Sigma_2_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz,
-        Sigma_5_xx, Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y,
-        h_2_z, h_3_x, h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_2_t, hc_3_x,
-        rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx,
-        rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy,
-        rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x,
-        rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
+        J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz,
+        Sigma_3_xx, Sigma_3_yy, Sigma_3_zz, Sigma_4_xx, Sigma_4_yy, Sigma_4_zz, Sigma_5_xx,
+        Sigma_5_yy, Sigma_5_zz, g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x,
+        h_3_y, h_3_z, h_4_x, h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx,
+        rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
+        rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
+        rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
+        rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
         rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
         rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
         rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t_2,
@@ -1317,22 +1310,17 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
     hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
     # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_t = rrrrrr_joint3_offset_x*(Jc_2_t_2 + hc_3_r0_x)
-    Jc_2_t_3 = 2.0*Jc_2_t
+    Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
+    Jc_2_t_3 = 2.0*Jc_2_t_2
     Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
     Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
-    # (rrrrrr-N52) first moment of the links from 2 outwards
-    hc_2_x = h_2_x + hc_2_t + hc_3_r0_x
-    hc_2_y = h_2_y + hc_3_r0_y
-    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
     _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
     _y_5 = (
-    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t - _x_8*s_3) - Jc_2_xy*c_2_t) -
+    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
         c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
         s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
     )
     # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t_2 = rrrrrr_joint2_offset_x*(Jc_1_t + hc_2_x*s_2 - c_2_t*hc_2_y)
     Jc_1_zz = J_1_xx + _y_5
     # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
     L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
@@ -2674,7 +2662,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 7293 mul, 5319 add, 30 div, 30 sqrt, 60 trig
+# M: 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig
 def _M_before(c, X, q, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -2743,15 +2731,14 @@ def _M_rrrrrr(c, k, x, s, f):
     (
     J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_2_zz, J_3_xx, J_3_xy, J_3_xz, J_3_yy,
         J_3_yz, J_3_zz, J_4_xx, J_4_xy, J_4_xz, J_4_yy, J_4_yz, J_5_xx, J_5_xy, J_5_xz, J_5_yy,
-        J_5_yz, J_5_zz, Jc_1_t, Jc_2_t_2, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_2_x, h_2_y, h_3_y, h_3_z,
-        h_4_y, h_4_z, h_5_x, h_5_y, h_5_z, hc_2_t, hc_3_x, rrrrrr_base_frame_xx,
-        rrrrrr_base_frame_xy, rrrrrr_base_frame_xz, rrrrrr_base_frame_yx, rrrrrr_base_frame_yy,
-        rrrrrr_base_frame_yz, rrrrrr_base_frame_zx, rrrrrr_base_frame_zy, rrrrrr_base_frame_zz,
-        rrrrrr_joint2_offset_x, rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x,
-        rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
-        rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
-        rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        J_5_yz, J_5_zz, Jc_2_t, Jc_3_t_2, Jc_3_t_3, Jc_4_xx, h_3_y, h_3_z, h_4_y, h_4_z, h_5_x,
+        h_5_y, h_5_z, hc_3_x, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
+        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t_2,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -2934,22 +2921,17 @@ def _M_rrrrrr(c, k, x, s, f):
     hc_3_r0_x = c_3*hc_3_x - hc_3_y*s_3
     hc_3_r0_y = c_3*hc_3_y + hc_3_x*s_3
     # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_t = rrrrrr_joint3_offset_x*(Jc_2_t_2 + hc_3_r0_x)
-    Jc_2_t_3 = 2.0*Jc_2_t
+    Jc_2_t_2 = rrrrrr_joint3_offset_x*(Jc_2_t + hc_3_r0_x)
+    Jc_2_t_3 = 2.0*Jc_2_t_2
     Jc_2_xy = J_2_xy + _x_7*s_3 + _x_8*c_3 - hc_3_r0_y*rrrrrr_joint3_offset_x
     Jc_2_zz = J_2_zz + Jc_2_t_3 + Jc_3_zz
-    # (rrrrrr-N52) first moment of the links from 2 outwards
-    hc_2_x = h_2_x + hc_2_t + hc_3_r0_x
-    hc_2_y = h_2_y + hc_3_r0_y
-    # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
     _y_4 = s_2*(J_2_xz + _x_9 - hc_3_z*rrrrrr_joint3_offset_x) - c_2_t*(J_2_yz + _y_3)
     _y_5 = (
-    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t - _x_8*s_3) - Jc_2_xy*c_2_t) -
+    s_2*(s_2*(J_2_xx + Jc_2_t_3 + _x_7*c_3 - 2.0*Jc_2_t_2 - _x_8*s_3) - Jc_2_xy*c_2_t) -
         c_2_t*(Jc_2_xy*s_2 - c_2_t*(J_2_yy + Jc_2_t_3 + c_3*(Jc_3_t_5 + Jc_3_yy*c_3) +
         s_3*(Jc_3_t_6 + Jc_3_xx*s_3)))
     )
     # (rrrrrr-N59) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t_2 = rrrrrr_joint2_offset_x*(Jc_1_t + hc_2_x*s_2 - c_2_t*hc_2_y)
     Jc_1_zz = J_1_xx + _y_5
     # (rrrrrr-N48) moment about joint 2 that accelerates joint 3, per unit
     L_c3_2_z = Jc_3_zz + hc_3_r0_x*rrrrrr_joint3_offset_x
@@ -8397,21 +8379,20 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
 (),
 ('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
             'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'J_4_xx', 'J_4_xy', 'J_4_xz', 'J_4_yy',
-            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_1_t',
-            'Jc_2_t_2', 'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'Sigma_2_xx', 'Sigma_2_yy',
-            'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy',
-            'Sigma_4_zz', 'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z',
-            'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x',
-            'h_4_y', 'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'hc_2_t', 'hc_3_x',
-            'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz',
-            'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz',
-            'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz',
-            'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x',
-            'rrrrrr_joint5_offset_x', 'rrrrrr_link3_mass', 'rrrrrr_link4_mass',
-            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
-            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
-            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t_2'),
+            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_2_t',
+            'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'Sigma_2_xx', 'Sigma_2_yy', 'Sigma_2_zz',
+            'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'Sigma_4_xx', 'Sigma_4_yy', 'Sigma_4_zz',
+            'Sigma_5_xx', 'Sigma_5_yy', 'Sigma_5_zz', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_y',
+            'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'h_4_x', 'h_4_y',
+            'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'hc_3_x', 'rrrrrr_base_frame_xx',
+            'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx',
+            'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx',
+            'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x',
+            'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
+            'rrrrrr_link3_mass', 'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
+            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
+            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -8456,17 +8437,17 @@ arrays=(('M', (6, 6)),),
 (),
 ('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_2_zz', 'J_3_xx', 'J_3_xy',
             'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'J_4_xx', 'J_4_xy', 'J_4_xz', 'J_4_yy',
-            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_1_t',
-            'Jc_2_t_2', 'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'h_2_x', 'h_2_y', 'h_3_y', 'h_3_z',
-            'h_4_y', 'h_4_z', 'h_5_x', 'h_5_y', 'h_5_z', 'hc_2_t', 'hc_3_x',
-            'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz',
-            'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz',
-            'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz',
-            'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x',
-            'rrrrrr_joint5_offset_x', 'rrrrrr_platform_joint_axis_platform_x',
-            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
-            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
+            'J_4_yz', 'J_5_xx', 'J_5_xy', 'J_5_xz', 'J_5_yy', 'J_5_yz', 'J_5_zz', 'Jc_2_t',
+            'Jc_3_t_2', 'Jc_3_t_3', 'Jc_4_xx', 'h_3_y', 'h_3_z', 'h_4_y', 'h_4_z', 'h_5_x',
+            'h_5_y', 'h_5_z', 'hc_3_x', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy',
+            'rrrrrr_base_frame_xz', 'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy',
+            'rrrrrr_base_frame_yz', 'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy',
+            'rrrrrr_base_frame_zz', 'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x',
+            'rrrrrr_joint4_offset_x', 'rrrrrr_joint5_offset_x',
+            'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
+            'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
+            'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
+            'size', 'size_t_2'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8),

@@ -908,7 +908,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1104 mul, 825 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 1098 mul, 822 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -1115,7 +1115,6 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
         const real g_r0_x = m->g_r0_x[i];
         const real g_r0_y = m->g_r0_y[i];
         const real g_r0_z = m->g_r0_z[i];
-        const real h_2_x = m->h_2_x[i];
         const real h_2_y = m->h_2_y[i];
         const real h_2_z = m->h_2_z[i];
         const real h_3_x = m->h_3_x[i];
@@ -1207,9 +1206,6 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
             axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z;
         const real axis_x_rprs_axes3_z = axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
             axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x;
-        /* (rprs-N20) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t = h_2_x + R(0.5)*q_2*rprs_link2_mass;
-        /* (rprs-V5) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rprs-V6) reciprocal vector 2 */
         const real inv_r_1_t_2 = 1/r_1_t_2;
@@ -1655,7 +1651,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 564 mul, 426 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 558 mul, 423 add, 9 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -1788,7 +1784,6 @@ INLINE void M_legs_rprs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_3_zz = m->J_3_zz[i];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real h_2_x = m->h_2_x[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -1878,9 +1873,6 @@ INLINE void M_legs_rprs(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_z;
         const real axis_x_rprs_axes3_z = axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
             axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x;
-        /* (rprs-N20) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t = h_2_x + R(0.5)*q_2*rprs_link2_mass;
-        /* (rprs-V5) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rprs-V6) reciprocal vector 2 */
         const real inv_r_1_t_2 = 1/r_1_t_2;

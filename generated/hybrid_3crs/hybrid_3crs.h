@@ -112,7 +112,7 @@ extern const hybrid_3crs_real hybrid_3crs_HOME_Q[HYBRID_3CRS_NJ];
    model is all NaN. */
 int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *model);
 
-/* Inertia matrix M. 564 mul, 426 add, 9 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 558 mul, 423 add, 9 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3crs_M(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hybrid_3crs_real *M);
 size_t hybrid_3crs_M_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
     hybrid_3crs_real *M, int *status);
@@ -130,7 +130,7 @@ int hybrid_3crs_H(const hybrid_3crs_model *model, const hybrid_3crs_real *X, hyb
 size_t hybrid_3crs_H_batch(const hybrid_3crs_model *model, size_t n, const hybrid_3crs_real *X,
     hybrid_3crs_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 1104 mul, 825 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
+/* M, Z and H together, sharing the work. 1098 mul, 822 add, 9 div, 6 sqrt, 0 trig. In: X (NQ), V
    (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3crs_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const
     hybrid_3crs_real *V, hybrid_3crs_real *M, hybrid_3crs_real *Z, hybrid_3crs_real *H);
@@ -170,7 +170,7 @@ size_t hybrid_3crs_inverse_dynamics_batch(const hybrid_3crs_model *model, size_t
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
     hybrid_3crs_real *wrench, hybrid_3crs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1104 mul, 825 add, 9 div, 6 sqrt,
+/* Acceleration A under the actuator forces tau and the wrench. 1098 mul, 822 add, 9 div, 6 sqrt,
    0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench (NW,
    or NULL). Out: A (NV). */
 int hybrid_3crs_forward_dynamics(const hybrid_3crs_model *model, const hybrid_3crs_real *X, const

@@ -661,7 +661,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 1104 mul, 825 add, 9 div, 6 sqrt, 0 trig
+# dynamics: 1098 mul, 822 add, 9 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -770,7 +770,7 @@ def _dynamics_rprs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, Sigma_3_xx, Sigma_3_yy, Sigma_3_zz,
-        branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
+        branch_1, branch_2, g_r0_x, g_r0_y, g_r0_z, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
         inv_size_t_6, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
         rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
         rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
@@ -855,9 +855,6 @@ def _dynamics_rprs(c, k, x, s, f):
     axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
         axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
     )
-    # (rprs-N20) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t = h_2_x + 0.5*q_2*rprs_link2_mass
-    # (rprs-V5) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rprs-V6) reciprocal vector 2
     inv_r_1_t_2 = 1.0/r_1_t_2
@@ -1150,7 +1147,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 564 mul, 426 add, 9 div, 6 sqrt, 0 trig
+# M: 558 mul, 423 add, 9 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1221,8 +1218,8 @@ def _M_before(c, X, f):
 def _M_rprs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_2_x, h_3_x,
-        h_3_y, h_3_z, inv_size_t_6, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
+    J_2_xx, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz, J_3_zz, branch_1, branch_2, h_3_x, h_3_y,
+        h_3_z, inv_size_t_6, rprs_base_frame_xx, rprs_base_frame_xy, rprs_base_frame_xz,
         rprs_base_frame_yx, rprs_base_frame_yy, rprs_base_frame_yz, rprs_base_frame_zx,
         rprs_base_frame_zy, rprs_base_frame_zz, rprs_base_point_x, rprs_base_point_y,
         rprs_base_point_z, rprs_joint3_offset_x, rprs_link2_mass, rprs_platform_joint_offset_x,
@@ -1303,9 +1300,6 @@ def _M_rprs(c, k, x, s, f):
     axis_y_rprs_axes3_in_base_x*axis_z_rprs_axes3_in_base_y -
         axis_y_rprs_axes3_in_base_y*axis_z_rprs_axes3_in_base_x
     )
-    # (rprs-N20) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t = h_2_x + 0.5*q_2*rprs_link2_mass
-    # (rprs-V5) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rprs-V6) reciprocal vector 2
     inv_r_1_t_2 = 1.0/r_1_t_2
@@ -3213,14 +3207,14 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             "rprs",
 (),
 ('J_2_xx', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'Sigma_3_xx', 'Sigma_3_yy',
-            'Sigma_3_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_x', 'h_2_y',
-            'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx',
-            'rprs_base_frame_xy', 'rprs_base_frame_xz', 'rprs_base_frame_yx',
-            'rprs_base_frame_yy', 'rprs_base_frame_yz', 'rprs_base_frame_zx',
-            'rprs_base_frame_zy', 'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y',
-            'rprs_base_point_z', 'rprs_joint3_offset_x', 'rprs_link2_mass',
-            'rprs_platform_joint_offset_x', 'rprs_platform_point_x', 'rprs_platform_point_y',
-            'rprs_platform_point_z', 'size', 'size_t_2', 'size_t_7'),
+            'Sigma_3_zz', 'branch_1', 'branch_2', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_2_y', 'h_2_z',
+            'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx', 'rprs_base_frame_xy',
+            'rprs_base_frame_xz', 'rprs_base_frame_yx', 'rprs_base_frame_yy',
+            'rprs_base_frame_yz', 'rprs_base_frame_zx', 'rprs_base_frame_zy',
+            'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y', 'rprs_base_point_z',
+            'rprs_joint3_offset_x', 'rprs_link2_mass', 'rprs_platform_joint_offset_x',
+            'rprs_platform_point_x', 'rprs_platform_point_y', 'rprs_platform_point_z', 'size',
+            'size_t_2', 'size_t_7'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -3269,13 +3263,13 @@ arrays=(('M', (6, 6)),),
             "rprs",
 (),
 ('J_2_xx', 'J_3_xx', 'J_3_xy', 'J_3_xz', 'J_3_yy', 'J_3_yz', 'J_3_zz', 'branch_1', 'branch_2',
-            'h_2_x', 'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx',
-            'rprs_base_frame_xy', 'rprs_base_frame_xz', 'rprs_base_frame_yx',
-            'rprs_base_frame_yy', 'rprs_base_frame_yz', 'rprs_base_frame_zx',
-            'rprs_base_frame_zy', 'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y',
-            'rprs_base_point_z', 'rprs_joint3_offset_x', 'rprs_link2_mass',
-            'rprs_platform_joint_offset_x', 'rprs_platform_point_x', 'rprs_platform_point_y',
-            'rprs_platform_point_z', 'size', 'size_t_2', 'size_t_7'),
+            'h_3_x', 'h_3_y', 'h_3_z', 'inv_size_t_6', 'rprs_base_frame_xx', 'rprs_base_frame_xy',
+            'rprs_base_frame_xz', 'rprs_base_frame_yx', 'rprs_base_frame_yy',
+            'rprs_base_frame_yz', 'rprs_base_frame_zx', 'rprs_base_frame_zy',
+            'rprs_base_frame_zz', 'rprs_base_point_x', 'rprs_base_point_y', 'rprs_base_point_z',
+            'rprs_joint3_offset_x', 'rprs_link2_mass', 'rprs_platform_joint_offset_x',
+            'rprs_platform_point_x', 'rprs_platform_point_y', 'rprs_platform_point_z', 'size',
+            'size_t_2', 'size_t_7'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

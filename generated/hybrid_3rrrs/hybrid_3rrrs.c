@@ -510,8 +510,6 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         const real h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
         const real h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
         const real h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t = R(0.5)*rrrs_joint2_offset_x*rrrs_link2_mass;
         /* (rrrs-G7) first moment of link 3 about the connection point */
         const real h_3_x = rho_tip_3_x*rrrs_link3_mass;
         const real h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
@@ -585,7 +583,6 @@ int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *
         model->J_3_yy[leg] = J_3_yy;
         model->J_3_yz[leg] = J_3_yz;
         model->J_3_zz[leg] = J_3_zz;
-        model->Jc_1_t[leg] = Jc_1_t;
         model->Jc_2_zz[leg] = Jc_2_zz;
         model->Kd_2_t[leg] = Kd_2_t;
         model->Kd_2_t_2[leg] = Kd_2_t_2;
@@ -1023,7 +1020,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1359 mul, 1020 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- dynamics: 1350 mul, 1014 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -1227,7 +1224,6 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
-        const real Jc_1_t = m->Jc_1_t[i];
         const real Jc_2_zz = m->Jc_2_zz[i];
         const real Kd_2_t = m->Kd_2_t[i];
         const real Kd_2_t_2 = m->Kd_2_t_2[i];
@@ -1378,8 +1374,6 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3;
         const real _y_2 = -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) -
             s_3*(J_3_t_2 - J_3_xx*s_3))) - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3));
-        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2);
         /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rrrs-V8) reciprocal vector 2 */
@@ -1870,7 +1864,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 36, w, code, H);
 }
 
-/* ---- M: 675 mul, 495 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
+/* ---- M: 666 mul, 489 add, 12 div, 6 sqrt, 0 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -2006,7 +2000,6 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_3_yy = m->J_3_yy[i];
         const real J_3_yz = m->J_3_yz[i];
         const real J_3_zz = m->J_3_zz[i];
-        const real Jc_1_t = m->Jc_1_t[i];
         const real Jc_2_zz = m->Jc_2_zz[i];
         const real Kd_2_t = m->Kd_2_t[i];
         const real Kd_2_t_2 = m->Kd_2_t_2[i];
@@ -2016,8 +2009,6 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real d_Gamma_2_y = m->d_Gamma_2_y[i];
         const real d_c_yy = m->d_c_yy[i];
         const real d_phi_3_t = m->d_phi_3_t[i];
-        const real h_2_x = m->h_2_x[i];
-        const real h_2_y = m->h_2_y[i];
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
@@ -2145,8 +2136,6 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real Jc_2_xy = J_2_xy + _x_2*c_3 - _x*s_3;
         const real _y_2 = -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) -
             s_3*(J_3_t_2 - J_3_xx*s_3))) - s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3));
-        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2);
         /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_z = 1/v_1_z;
         /* (rrrs-V8) reciprocal vector 2 */

@@ -100,19 +100,19 @@ typedef struct {
             h_star_z, m_star;
     /* legs of type rrrs */
     hybrid_3rrrs_real J_1_xx[3], J_2_xx[3], J_2_xy[3], J_2_xz[3], J_2_yy[3], J_2_yz[3], J_3_xx[3],
-            J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3], Jc_1_t[3], Jc_2_zz[3], Kd_2_t[3],
-            Kd_2_t_2[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], Sigma_3_xx[3], Sigma_3_yy[3],
-            Sigma_3_zz[3], b_r0_x[3], b_r0_y[3], branch_1[3], branch_2[3], d_Gamma_2_t[3],
-            d_Gamma_2_y[3], d_c_yy[3], d_phi_3_t[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3],
-            h_1_y[3], h_1_z[3], h_2_x[3], h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3],
-            inv_rrrs_platform_joint_offset_x[3], inv_size_t_6[3], inv_size_t_7[3], potential_t[3],
-            potential_t_2[3], rho2_2_t[3], rrrs_base_frame_xx[3], rrrs_base_frame_xy[3],
-            rrrs_base_frame_xz[3], rrrs_base_frame_yx[3], rrrs_base_frame_yy[3],
-            rrrs_base_frame_yz[3], rrrs_base_frame_zx[3], rrrs_base_frame_zy[3],
-            rrrs_base_frame_zz[3], rrrs_base_point_x[3], rrrs_base_point_y[3], rrrs_base_point_z[3],
-            rrrs_joint2_offset_x[3], rrrs_joint3_offset_x[3], rrrs_link1_mass[3], rrrs_link2_mass[3],
-            rrrs_link3_mass[3], rrrs_platform_joint_offset_x[3], rrrs_platform_point_x[3],
-            rrrs_platform_point_y[3], rrrs_platform_point_z[3], size_[3], size_t_8[3];
+            J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3], Jc_2_zz[3], Kd_2_t[3], Kd_2_t_2[3],
+            Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3],
+            b_r0_x[3], b_r0_y[3], branch_1[3], branch_2[3], d_Gamma_2_t[3], d_Gamma_2_y[3], d_c_yy[3],
+            d_phi_3_t[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3], h_1_y[3], h_1_z[3], h_2_x[3],
+            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], inv_rrrs_platform_joint_offset_x[3],
+            inv_size_t_6[3], inv_size_t_7[3], potential_t[3], potential_t_2[3], rho2_2_t[3],
+            rrrs_base_frame_xx[3], rrrs_base_frame_xy[3], rrrs_base_frame_xz[3],
+            rrrs_base_frame_yx[3], rrrs_base_frame_yy[3], rrrs_base_frame_yz[3],
+            rrrs_base_frame_zx[3], rrrs_base_frame_zy[3], rrrs_base_frame_zz[3], rrrs_base_point_x[3],
+            rrrs_base_point_y[3], rrrs_base_point_z[3], rrrs_joint2_offset_x[3],
+            rrrs_joint3_offset_x[3], rrrs_link1_mass[3], rrrs_link2_mass[3], rrrs_link3_mass[3],
+            rrrs_platform_joint_offset_x[3], rrrs_platform_point_x[3], rrrs_platform_point_y[3],
+            rrrs_platform_point_z[3], size_[3], size_t_8[3];
 } hybrid_3rrrs_model;
 
 extern const hybrid_3rrrs_params hybrid_3rrrs_default_params;
@@ -124,7 +124,7 @@ extern const hybrid_3rrrs_real hybrid_3rrrs_HOME_Q[HYBRID_3RRRS_NJ];
    model is all NaN. */
 int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *model);
 
-/* Inertia matrix M. 675 mul, 495 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 666 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_M(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, hybrid_3rrrs_real
     *M);
 size_t hybrid_3rrrs_M_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
@@ -144,7 +144,7 @@ int hybrid_3rrrs_H(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, 
 size_t hybrid_3rrrs_H_batch(const hybrid_3rrrs_model *model, size_t n, const hybrid_3rrrs_real *X,
     hybrid_3rrrs_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 1359 mul, 1020 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1350 mul, 1014 add, 12 div, 6 sqrt, 0 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X, const
     hybrid_3rrrs_real *V, hybrid_3rrrs_real *M, hybrid_3rrrs_real *Z, hybrid_3rrrs_real *H);
@@ -184,7 +184,7 @@ size_t hybrid_3rrrs_inverse_dynamics_batch(const hybrid_3rrrs_model *model, size
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1359 mul, 1020 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1350 mul, 1014 add, 12 div, 6
    sqrt, 0 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_forward_dynamics(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,

@@ -433,8 +433,6 @@ def _prepare(p):
     h_2_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     h_2_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     h_2_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t = 0.5*rrrs_joint2_offset_x*rrrs_link2_mass
     # (rrrs-G7) first moment of link 3 about the connection point
     h_3_x = rho_tip_3_x*rrrs_link3_mass
     h_3_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
@@ -567,7 +565,6 @@ def _prepare(p):
             "J_3_yy": np.broadcast_to(J_3_yy, _rrrs),
             "J_3_yz": np.broadcast_to(J_3_yz, _rrrs),
             "J_3_zz": np.broadcast_to(J_3_zz, _rrrs),
-            "Jc_1_t": np.broadcast_to(Jc_1_t, _rrrs),
             "Jc_2_zz": np.broadcast_to(Jc_2_zz, _rrrs),
             "Kd_2_t": np.broadcast_to(Kd_2_t, _rrrs),
             "Kd_2_t_2": np.broadcast_to(Kd_2_t_2, _rrrs),
@@ -779,7 +776,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 1359 mul, 1020 add, 12 div, 6 sqrt, 0 trig
+# dynamics: 1350 mul, 1014 add, 12 div, 6 sqrt, 0 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -888,7 +885,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-        J_3_zz, Jc_1_t, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
+        J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, Sigma_2_xx, Sigma_2_yy, Sigma_2_zz, Sigma_3_xx,
         Sigma_3_yy, Sigma_3_zz, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy, d_phi_3_t,
         g_r0_x, g_r0_y, g_r0_z, h_1_y, h_1_z, h_2_x, h_2_y, h_2_z, h_3_x, h_3_y, h_3_z,
         inv_rrrs_platform_joint_offset_x, inv_size_t_6, inv_size_t_7, rho2_2_t,
@@ -1010,8 +1007,6 @@ def _dynamics_rrrs(c, k, x, s, f):
     -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3))) -
         s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
     )
-    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2)
     # (rrrs-V7) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rrrs-V8) reciprocal vector 2
@@ -1357,7 +1352,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 675 mul, 495 add, 12 div, 6 sqrt, 0 trig
+# M: 666 mul, 489 add, 12 div, 6 sqrt, 0 trig
 def _M_before(c, X, f):
     (
     J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -1429,12 +1424,12 @@ def _M_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_1_xx, J_2_xx, J_2_xy, J_2_xz, J_2_yy, J_2_yz, J_3_xx, J_3_xy, J_3_xz, J_3_yy, J_3_yz,
-        J_3_zz, Jc_1_t, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y,
-        d_c_yy, d_phi_3_t, h_2_x, h_2_y, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x,
-        inv_size_t_6, inv_size_t_7, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+        J_3_zz, Jc_2_zz, Kd_2_t, Kd_2_t_2, branch_1, branch_2, d_Gamma_2_t, d_Gamma_2_y, d_c_yy,
+        d_phi_3_t, h_3_x, h_3_y, h_3_z, inv_rrrs_platform_joint_offset_x, inv_size_t_6,
+        inv_size_t_7, rho2_2_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
         rrrs_platform_point_z, size, size_t_8,
     ) = k
@@ -1547,8 +1542,6 @@ def _M_rrrs(c, k, x, s, f):
     -c_2*(-Jc_2_xy*s_2 - c_2*(J_2_yy + c_3*(J_3_yy*c_3 - J_3_t) - s_3*(J_3_t_2 - J_3_xx*s_3))) -
         s_2*(-Jc_2_xy*c_2 - s_2*(J_2_xx + _x*c_3 + _x_2*s_3))
     )
-    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_t_2 = rrrs_joint2_offset_x*(Jc_1_t - c_2*h_2_y - h_2_x*s_2)
     # (rrrs-V7) reciprocal vector 1
     inv_v_1_z = 1.0/v_1_z
     # (rrrs-V8) reciprocal vector 2
@@ -3860,7 +3853,7 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             "rrrs",
 (),
 ('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
-            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_1_t', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'Sigma_2_xx',
+            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'Sigma_2_xx',
             'Sigma_2_yy', 'Sigma_2_zz', 'Sigma_3_xx', 'Sigma_3_yy', 'Sigma_3_zz', 'branch_1',
             'branch_2', 'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'g_r0_x', 'g_r0_y',
             'g_r0_z', 'h_1_y', 'h_1_z', 'h_2_x', 'h_2_y', 'h_2_z', 'h_3_x', 'h_3_y', 'h_3_z',
@@ -3919,16 +3912,15 @@ arrays=(('M', (6, 6)),),
             "rrrs",
 (),
 ('J_1_xx', 'J_2_xx', 'J_2_xy', 'J_2_xz', 'J_2_yy', 'J_2_yz', 'J_3_xx', 'J_3_xy', 'J_3_xz',
-            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_1_t', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'branch_1',
-            'branch_2', 'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'h_2_x', 'h_2_y',
-            'h_3_x', 'h_3_y', 'h_3_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_t_6',
-            'inv_size_t_7', 'rho2_2_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size',
-            'size_t_8'),
+            'J_3_yy', 'J_3_yz', 'J_3_zz', 'Jc_2_zz', 'Kd_2_t', 'Kd_2_t_2', 'branch_1', 'branch_2',
+            'd_Gamma_2_t', 'd_Gamma_2_y', 'd_c_yy', 'd_phi_3_t', 'h_3_x', 'h_3_y', 'h_3_z',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_t_6', 'inv_size_t_7', 'rho2_2_t',
+            'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
+            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
+            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
+            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
+            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size', 'size_t_8'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

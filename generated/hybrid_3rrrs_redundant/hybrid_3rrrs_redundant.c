@@ -637,17 +637,12 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
         const real h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
         /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_rrrrs_t = R(0.5)*rrrrs_link3_mass;
-        const real Jc_2_rrrrs_t_2 = Jc_2_rrrrs_t*rrrrs_joint3_offset_x;
-        const real Jc_2_rrrrs_t_3 = h_3_rrrrs_z*rrrrs_joint3_offset_x;
+        const real Jc_2_rrrrs_t = R(0.5)*rrrrs_joint3_offset_x*rrrrs_link3_mass;
+        const real Jc_2_rrrrs_t_2 = h_3_rrrrs_z*rrrrs_joint3_offset_x;
         /* (rrrrs-G4) first moment of link 2 about the origin of link 2 */
         const real h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass;
         const real h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
         const real h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        /* (rrrrs-N33) first moment of the links from 2 outwards */
-        const real hc_2_rrrrs_t = rrrrs_joint3_offset_x*rrrrs_link3_mass;
-        /* (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrrrs_t = rrrrs_joint2_offset_x*(Jc_2_rrrrs_t + R(0.5)*rrrrs_link2_mass);
         /* (rrrrs-G9) first moment of link 4 about the connection point */
         const real h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass;
         const real h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass;
@@ -738,9 +733,8 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->J_4_rrrrs_yy[leg] = J_4_rrrrs_yy;
         model->J_4_rrrrs_yz[leg] = J_4_rrrrs_yz;
         model->J_4_rrrrs_zz[leg] = J_4_rrrrs_zz;
-        model->Jc_1_rrrrs_t[leg] = Jc_1_rrrrs_t;
+        model->Jc_2_rrrrs_t[leg] = Jc_2_rrrrs_t;
         model->Jc_2_rrrrs_t_2[leg] = Jc_2_rrrrs_t_2;
-        model->Jc_2_rrrrs_t_3[leg] = Jc_2_rrrrs_t_3;
         model->Jc_3_rrrrs_zz[leg] = Jc_3_rrrrs_zz;
         model->Kd_3_rrrrs_t[leg] = Kd_3_rrrrs_t;
         model->Kd_3_rrrrs_t_2[leg] = Kd_3_rrrrs_t_2;
@@ -778,7 +772,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->h_4_rrrrs_x[leg] = h_4_rrrrs_x;
         model->h_4_rrrrs_y[leg] = h_4_rrrrs_y;
         model->h_4_rrrrs_z[leg] = h_4_rrrrs_z;
-        model->hc_2_rrrrs_t[leg] = hc_2_rrrrs_t;
         model->inv_rrrrs_platform_joint_offset_x[leg] = inv_rrrrs_platform_joint_offset_x;
         model->inv_size_rrrrs_t_7[leg] = inv_size_rrrrs_t_7;
         model->inv_size_rrrrs_t_8[leg] = inv_size_rrrrs_t_8;
@@ -940,8 +933,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
         const real h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
         const real h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrrs_t = R(0.5)*rrrs_joint2_offset_x*rrrs_link2_mass;
         /* (rrrs-G7) first moment of link 3 about the connection point */
         const real h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass;
         const real h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
@@ -1017,7 +1008,6 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->J_3_rrrs_yy[leg] = J_3_rrrs_yy;
         model->J_3_rrrs_yz[leg] = J_3_rrrs_yz;
         model->J_3_rrrs_zz[leg] = J_3_rrrs_zz;
-        model->Jc_1_rrrs_t[leg] = Jc_1_rrrs_t;
         model->Jc_2_rrrs_zz[leg] = Jc_2_rrrs_zz;
         model->Kd_2_rrrs_t[leg] = Kd_2_rrrs_t;
         model->Kd_2_rrrs_t_2[leg] = Kd_2_rrrs_t_2;
@@ -1455,7 +1445,7 @@ static void moved(const real *X, const real *step, real part, real *to)
 
 /* ---- functions of the state: M, Z, H and the like ---- */
 
-/* ---- dynamics: 1547 mul, 1205 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- dynamics: 1538 mul, 1196 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], t_dot_x[LANES],
@@ -1669,9 +1659,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real J_4_rrrrs_yy = m->J_4_rrrrs_yy[i];
         const real J_4_rrrrs_yz = m->J_4_rrrrs_yz[i];
         const real J_4_rrrrs_zz = m->J_4_rrrrs_zz[i];
-        const real Jc_1_rrrrs_t = m->Jc_1_rrrrs_t[i];
+        const real Jc_2_rrrrs_t = m->Jc_2_rrrrs_t[i];
         const real Jc_2_rrrrs_t_2 = m->Jc_2_rrrrs_t_2[i];
-        const real Jc_2_rrrrs_t_3 = m->Jc_2_rrrrs_t_3[i];
         const real Jc_3_rrrrs_zz = m->Jc_3_rrrrs_zz[i];
         const real Kd_3_rrrrs_t = m->Kd_3_rrrrs_t[i];
         const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
@@ -1705,7 +1694,6 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real h_4_rrrrs_x = m->h_4_rrrrs_x[i];
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
-        const real hc_2_rrrrs_t = m->hc_2_rrrrs_t[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
         const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
         const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
@@ -1876,22 +1864,15 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
         const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
         /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x);
-        const real Jc_2_rrrrs_t_4 = 2*Jc_2_rrrrs_t;
+        const real Jc_2_rrrrs_t_3 = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t + h_3_rrrrs_r0_x);
+        const real Jc_2_rrrrs_t_4 = 2*Jc_2_rrrrs_t_3;
         const real Jc_2_rrrrs_xy = J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs -
             h_3_rrrrs_r0_y*rrrrs_joint3_offset_x;
-        /* (rrrrs-N33) first moment of the links from 2 outwards */
-        const real hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t;
-        const real hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y;
-        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
         const real _y_3 = s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs -
-            2*Jc_2_rrrrs_t - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) -
+            2*Jc_2_rrrrs_t_3 - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) -
             c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs - c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 +
             c_3_rrrrs*(Jc_3_rrrrs_t + Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 +
             Jc_3_rrrrs_xx*s_3_rrrrs)));
-        /* (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrrrs_t_2 = rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs -
-            c_2_rrrrs_t*hc_2_rrrrs_y);
         /* (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit */
         const real L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x;
         /* (rrrrs-V9) reciprocal vector 1 */
@@ -2286,7 +2267,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y -
             d_G_rrrrs_t*r_2_rrrrs_r1_x;
         const real d_P_2_rrrrs_z = d_G_rrrrs_xz*r_2_rrrrs_r1_y +
-            inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 - Jc_2_rrrrs_t_3) -
+            inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 - Jc_2_rrrrs_t_2) -
             c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x;
         const real d_P_2_rrrrs_in_base_x = axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x +
             axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
@@ -2487,7 +2468,6 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real J_3_rrrs_yy = m->J_3_rrrs_yy[i];
         const real J_3_rrrs_yz = m->J_3_rrrs_yz[i];
         const real J_3_rrrs_zz = m->J_3_rrrs_zz[i];
-        const real Jc_1_rrrs_t = m->Jc_1_rrrs_t[i];
         const real Jc_2_rrrs_zz = m->Jc_2_rrrs_zz[i];
         const real Kd_2_rrrs_t = m->Kd_2_rrrs_t[i];
         const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
@@ -2644,9 +2624,6 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs - J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 -
             J_3_rrrs_xx*s_3_rrrs))) - s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx +
             _x_7*c_3_rrrs + _x_8*s_3_rrrs));
-        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y -
-            h_2_rrrs_x*s_2_rrrs);
         /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_rrrs_z = 1/v_1_rrrs_z;
         /* (rrrs-V8) reciprocal vector 2 */
@@ -3228,7 +3205,7 @@ INLINE void dynamics_any(const prepared *m, size_t w, const real *X, const real 
     deliver(H_of, 49, w, code, H);
 }
 
-/* ---- M: 768 mul, 589 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
+/* ---- M: 759 mul, 580 add, 12 div, 6 sqrt, 2 trig, every leg counted ---- */
 typedef struct {
     real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
         R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], h_star_in_base_x[LANES],
@@ -3373,9 +3350,8 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real J_4_rrrrs_yy = m->J_4_rrrrs_yy[i];
         const real J_4_rrrrs_yz = m->J_4_rrrrs_yz[i];
         const real J_4_rrrrs_zz = m->J_4_rrrrs_zz[i];
-        const real Jc_1_rrrrs_t = m->Jc_1_rrrrs_t[i];
+        const real Jc_2_rrrrs_t = m->Jc_2_rrrrs_t[i];
         const real Jc_2_rrrrs_t_2 = m->Jc_2_rrrrs_t_2[i];
-        const real Jc_2_rrrrs_t_3 = m->Jc_2_rrrrs_t_3[i];
         const real Jc_3_rrrrs_zz = m->Jc_3_rrrrs_zz[i];
         const real Kd_3_rrrrs_t = m->Kd_3_rrrrs_t[i];
         const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
@@ -3386,14 +3362,11 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real d_Gamma_3_rrrrs_y = m->d_Gamma_3_rrrrs_y[i];
         const real d_c_rrrrs_yy = m->d_c_rrrrs_yy[i];
         const real d_phi_4_rrrrs_t = m->d_phi_4_rrrrs_t[i];
-        const real h_2_rrrrs_x = m->h_2_rrrrs_x[i];
-        const real h_2_rrrrs_y = m->h_2_rrrrs_y[i];
         const real h_3_rrrrs_x = m->h_3_rrrrs_x[i];
         const real h_3_rrrrs_y = m->h_3_rrrrs_y[i];
         const real h_4_rrrrs_x = m->h_4_rrrrs_x[i];
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
-        const real hc_2_rrrrs_t = m->hc_2_rrrrs_t[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
         const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
         const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
@@ -3562,22 +3535,15 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
         const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
         /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
-        const real Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x);
-        const real Jc_2_rrrrs_t_4 = 2*Jc_2_rrrrs_t;
+        const real Jc_2_rrrrs_t_3 = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t + h_3_rrrrs_r0_x);
+        const real Jc_2_rrrrs_t_4 = 2*Jc_2_rrrrs_t_3;
         const real Jc_2_rrrrs_xy = J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs -
             h_3_rrrrs_r0_y*rrrrs_joint3_offset_x;
-        /* (rrrrs-N33) first moment of the links from 2 outwards */
-        const real hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t;
-        const real hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y;
-        /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
         const real _y_3 = s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs -
-            2*Jc_2_rrrrs_t - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) -
+            2*Jc_2_rrrrs_t_3 - _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) -
             c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs - c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 +
             c_3_rrrrs*(Jc_3_rrrrs_t + Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 +
             Jc_3_rrrrs_xx*s_3_rrrrs)));
-        /* (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrrrs_t_2 = rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs -
-            c_2_rrrrs_t*hc_2_rrrrs_y);
         /* (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit */
         const real L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x;
         /* (rrrrs-V9) reciprocal vector 1 */
@@ -3692,7 +3658,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y -
             d_G_rrrrs_t*r_2_rrrrs_r1_x;
         const real d_P_2_rrrrs_z = d_G_rrrrs_xz*r_2_rrrrs_r1_y +
-            inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 - Jc_2_rrrrs_t_3) -
+            inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 - Jc_2_rrrrs_t_2) -
             c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x;
         const real d_P_2_rrrrs_in_base_x = axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x +
             axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
@@ -3828,7 +3794,6 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real J_3_rrrs_yy = m->J_3_rrrs_yy[i];
         const real J_3_rrrs_yz = m->J_3_rrrs_yz[i];
         const real J_3_rrrs_zz = m->J_3_rrrs_zz[i];
-        const real Jc_1_rrrs_t = m->Jc_1_rrrs_t[i];
         const real Jc_2_rrrs_zz = m->Jc_2_rrrs_zz[i];
         const real Kd_2_rrrs_t = m->Kd_2_rrrs_t[i];
         const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
@@ -3838,8 +3803,6 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real d_Gamma_2_rrrs_y = m->d_Gamma_2_rrrs_y[i];
         const real d_c_rrrs_yy = m->d_c_rrrs_yy[i];
         const real d_phi_3_rrrs_t = m->d_phi_3_rrrs_t[i];
-        const real h_2_rrrs_x = m->h_2_rrrs_x[i];
-        const real h_2_rrrs_y = m->h_2_rrrs_y[i];
         const real h_3_rrrs_x = m->h_3_rrrs_x[i];
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
@@ -3973,9 +3936,6 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
             c_3_rrrs*(J_3_rrrs_yy*c_3_rrrs - J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 -
             J_3_rrrs_xx*s_3_rrrs))) - s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx +
             _x_7*c_3_rrrs + _x_8*s_3_rrrs));
-        /* (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1 */
-        const real Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y -
-            h_2_rrrs_x*s_2_rrrs);
         /* (rrrs-V7) reciprocal vector 1 */
         const real inv_v_1_rrrs_z = 1/v_1_rrrs_z;
         /* (rrrs-V8) reciprocal vector 2 */

@@ -141,33 +141,32 @@ typedef struct {
     hybrid_3rrrs_redundant_real J_1_rrrrs_xx[1], J_2_rrrrs_xx[1], J_2_rrrrs_xy[1], J_2_rrrrs_xz[1],
             J_2_rrrrs_yy[1], J_2_rrrrs_yz[1], J_2_rrrrs_zz[1], J_3_rrrrs_xx[1], J_3_rrrrs_xy[1],
             J_3_rrrrs_xz[1], J_3_rrrrs_yy[1], J_3_rrrrs_yz[1], J_4_rrrrs_xx[1], J_4_rrrrs_xy[1],
-            J_4_rrrrs_xz[1], J_4_rrrrs_yy[1], J_4_rrrrs_yz[1], J_4_rrrrs_zz[1], Jc_1_rrrrs_t[1],
-            Jc_2_rrrrs_t_2[1], Jc_2_rrrrs_t_3[1], Jc_3_rrrrs_zz[1], Kd_3_rrrrs_t[1],
-            Kd_3_rrrrs_t_2[1], Sigma_2_rrrrs_xx[1], Sigma_2_rrrrs_yy[1], Sigma_2_rrrrs_zz[1],
-            Sigma_3_rrrrs_xx[1], Sigma_3_rrrrs_yy[1], Sigma_3_rrrrs_zz[1], Sigma_4_rrrrs_xx[1],
-            Sigma_4_rrrrs_yy[1], Sigma_4_rrrrs_zz[1], b_rrrrs_r0_x[1], b_rrrrs_r0_y[1],
-            b_rrrrs_r0_z[1], branch_1_rrrrs[1], branch_3_rrrrs[1], d_G_rrrrs_t[1],
-            d_Gamma_3_rrrrs_t[1], d_Gamma_3_rrrrs_y[1], d_c_rrrrs_yy[1], d_phi_4_rrrrs_t[1],
-            g_r0_x[1], g_r0_y[1], g_r0_z[1], h_1_rrrrs_x[1], h_1_rrrrs_y[1], h_1_rrrrs_z[1],
-            h_2_rrrrs_x[1], h_2_rrrrs_y[1], h_2_rrrrs_z[1], h_3_rrrrs_x[1], h_3_rrrrs_y[1],
-            h_3_rrrrs_z[1], h_4_rrrrs_x[1], h_4_rrrrs_y[1], h_4_rrrrs_z[1], hc_2_rrrrs_t[1],
-            inv_rrrrs_platform_joint_offset_x[1], inv_size_rrrrs_t_7[1], inv_size_rrrrs_t_8[1],
-            potential_t_3[1], potential_t_4[1], rho2_3_rrrrs_t[1], rrrrs_base_frame_xx[1],
-            rrrrs_base_frame_xy[1], rrrrs_base_frame_xz[1], rrrrs_base_frame_yx[1],
-            rrrrs_base_frame_yy[1], rrrrs_base_frame_yz[1], rrrrs_base_frame_zx[1],
-            rrrrs_base_frame_zy[1], rrrrs_base_frame_zz[1], rrrrs_base_point_x[1],
-            rrrrs_base_point_y[1], rrrrs_base_point_z[1], rrrrs_joint2_offset_x[1],
-            rrrrs_joint3_offset_x[1], rrrrs_joint4_offset_x[1], rrrrs_link1_mass[1],
-            rrrrs_link2_mass[1], rrrrs_link3_mass[1], rrrrs_link4_mass[1],
+            J_4_rrrrs_xz[1], J_4_rrrrs_yy[1], J_4_rrrrs_yz[1], J_4_rrrrs_zz[1], Jc_2_rrrrs_t[1],
+            Jc_2_rrrrs_t_2[1], Jc_3_rrrrs_zz[1], Kd_3_rrrrs_t[1], Kd_3_rrrrs_t_2[1],
+            Sigma_2_rrrrs_xx[1], Sigma_2_rrrrs_yy[1], Sigma_2_rrrrs_zz[1], Sigma_3_rrrrs_xx[1],
+            Sigma_3_rrrrs_yy[1], Sigma_3_rrrrs_zz[1], Sigma_4_rrrrs_xx[1], Sigma_4_rrrrs_yy[1],
+            Sigma_4_rrrrs_zz[1], b_rrrrs_r0_x[1], b_rrrrs_r0_y[1], b_rrrrs_r0_z[1], branch_1_rrrrs[1],
+            branch_3_rrrrs[1], d_G_rrrrs_t[1], d_Gamma_3_rrrrs_t[1], d_Gamma_3_rrrrs_y[1],
+            d_c_rrrrs_yy[1], d_phi_4_rrrrs_t[1], g_r0_x[1], g_r0_y[1], g_r0_z[1], h_1_rrrrs_x[1],
+            h_1_rrrrs_y[1], h_1_rrrrs_z[1], h_2_rrrrs_x[1], h_2_rrrrs_y[1], h_2_rrrrs_z[1],
+            h_3_rrrrs_x[1], h_3_rrrrs_y[1], h_3_rrrrs_z[1], h_4_rrrrs_x[1], h_4_rrrrs_y[1],
+            h_4_rrrrs_z[1], inv_rrrrs_platform_joint_offset_x[1], inv_size_rrrrs_t_7[1],
+            inv_size_rrrrs_t_8[1], potential_t_3[1], potential_t_4[1], rho2_3_rrrrs_t[1],
+            rrrrs_base_frame_xx[1], rrrrs_base_frame_xy[1], rrrrs_base_frame_xz[1],
+            rrrrs_base_frame_yx[1], rrrrs_base_frame_yy[1], rrrrs_base_frame_yz[1],
+            rrrrs_base_frame_zx[1], rrrrs_base_frame_zy[1], rrrrs_base_frame_zz[1],
+            rrrrs_base_point_x[1], rrrrs_base_point_y[1], rrrrs_base_point_z[1],
+            rrrrs_joint2_offset_x[1], rrrrs_joint3_offset_x[1], rrrrs_joint4_offset_x[1],
+            rrrrs_link1_mass[1], rrrrs_link2_mass[1], rrrrs_link3_mass[1], rrrrs_link4_mass[1],
             rrrrs_platform_joint_offset_x[1], rrrrs_platform_point_x[1], rrrrs_platform_point_y[1],
             rrrrs_platform_point_z[1], size_rrrrs[1], size_rrrrs_t_8[1];
     /* legs of type rrrs */
     hybrid_3rrrs_redundant_real J_1_rrrs_xx[2], J_2_rrrs_xx[2], J_2_rrrs_xy[2], J_2_rrrs_xz[2],
             J_2_rrrs_yy[2], J_2_rrrs_yz[2], J_3_rrrs_xx[2], J_3_rrrs_xy[2], J_3_rrrs_xz[2],
-            J_3_rrrs_yy[2], J_3_rrrs_yz[2], J_3_rrrs_zz[2], Jc_1_rrrs_t[2], Jc_2_rrrs_zz[2],
-            Kd_2_rrrs_t[2], Kd_2_rrrs_t_2[2], Sigma_2_rrrs_xx[2], Sigma_2_rrrs_yy[2],
-            Sigma_2_rrrs_zz[2], Sigma_3_rrrs_xx[2], Sigma_3_rrrs_yy[2], Sigma_3_rrrs_zz[2],
-            b_rrrs_r0_x[2], b_rrrs_r0_y[2], branch_1_rrrs[2], branch_2_rrrs[2], d_Gamma_2_rrrs_t[2],
+            J_3_rrrs_yy[2], J_3_rrrs_yz[2], J_3_rrrs_zz[2], Jc_2_rrrs_zz[2], Kd_2_rrrs_t[2],
+            Kd_2_rrrs_t_2[2], Sigma_2_rrrs_xx[2], Sigma_2_rrrs_yy[2], Sigma_2_rrrs_zz[2],
+            Sigma_3_rrrs_xx[2], Sigma_3_rrrs_yy[2], Sigma_3_rrrs_zz[2], b_rrrs_r0_x[2],
+            b_rrrs_r0_y[2], branch_1_rrrs[2], branch_2_rrrs[2], d_Gamma_2_rrrs_t[2],
             d_Gamma_2_rrrs_y[2], d_c_rrrs_yy[2], d_phi_3_rrrs_t[2], g_r0_x_2[2], g_r0_y_2[2],
             g_r0_z_2[2], h_1_rrrs_x[2], h_1_rrrs_y[2], h_1_rrrs_z[2], h_2_rrrs_x[2], h_2_rrrs_y[2],
             h_2_rrrs_z[2], h_3_rrrs_x[2], h_3_rrrs_y[2], h_3_rrrs_z[2],
@@ -191,7 +190,7 @@ extern const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_Q[HYBRID_3R
    model is all NaN. */
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model);
 
-/* Inertia matrix M. 768 mul, 589 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
+/* Inertia matrix M. 759 mul, 580 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
 int hybrid_3rrrs_redundant_M(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *M);
 size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
@@ -213,7 +212,7 @@ int hybrid_3rrrs_redundant_H(const hybrid_3rrrs_redundant_model *model, const
 size_t hybrid_3rrrs_redundant_H_batch(const hybrid_3rrrs_redundant_model *model, size_t n, const
     hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 1547 mul, 1205 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
+/* M, Z and H together, sharing the work. 1538 mul, 1196 add, 12 div, 6 sqrt, 2 trig. In: X (NQ),
    V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
 int hybrid_3rrrs_redundant_dynamics(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
@@ -261,7 +260,7 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
     hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
     hybrid_3rrrs_redundant_real *tau, int *status);
 
-/* Acceleration A under the actuator forces tau and the wrench. 1547 mul, 1205 add, 12 div, 6
+/* Acceleration A under the actuator forces tau and the wrench. 1538 mul, 1196 add, 12 div, 6
    sqrt, 2 trig; the solution of the linear equations apart. In: X (NQ), V (NV), tau (NU), wrench
    (NW, or NULL). Out: A (NV). */
 int hybrid_3rrrs_redundant_forward_dynamics(const hybrid_3rrrs_redundant_model *model, const

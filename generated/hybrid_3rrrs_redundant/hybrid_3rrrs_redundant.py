@@ -601,17 +601,12 @@ def _prepare(p):
     h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
     h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
     # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_rrrrs_t = 0.5*rrrrs_link3_mass
-    Jc_2_rrrrs_t_2 = Jc_2_rrrrs_t*rrrrs_joint3_offset_x
-    Jc_2_rrrrs_t_3 = h_3_rrrrs_z*rrrrs_joint3_offset_x
+    Jc_2_rrrrs_t = 0.5*rrrrs_joint3_offset_x*rrrrs_link3_mass
+    Jc_2_rrrrs_t_2 = h_3_rrrrs_z*rrrrs_joint3_offset_x
     # (rrrrs-G4) first moment of link 2 about the origin of link 2
     h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
     h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
     h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
-    # (rrrrs-N33) first moment of the links from 2 outwards
-    hc_2_rrrrs_t = rrrrs_joint3_offset_x*rrrrs_link3_mass
-    # (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrrrs_t = rrrrs_joint2_offset_x*(Jc_2_rrrrs_t + 0.5*rrrrs_link2_mass)
     # (rrrrs-G9) first moment of link 4 about the connection point
     h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass
     h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
@@ -773,8 +768,6 @@ def _prepare(p):
     h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrrs_t = 0.5*rrrs_joint2_offset_x*rrrs_link2_mass
     # (rrrs-G7) first moment of link 3 about the connection point
     h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass
     h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
@@ -914,9 +907,8 @@ def _prepare(p):
             "J_4_rrrrs_yy": np.broadcast_to(J_4_rrrrs_yy, _rrrrs),
             "J_4_rrrrs_yz": np.broadcast_to(J_4_rrrrs_yz, _rrrrs),
             "J_4_rrrrs_zz": np.broadcast_to(J_4_rrrrs_zz, _rrrrs),
-            "Jc_1_rrrrs_t": np.broadcast_to(Jc_1_rrrrs_t, _rrrrs),
+            "Jc_2_rrrrs_t": np.broadcast_to(Jc_2_rrrrs_t, _rrrrs),
             "Jc_2_rrrrs_t_2": np.broadcast_to(Jc_2_rrrrs_t_2, _rrrrs),
-            "Jc_2_rrrrs_t_3": np.broadcast_to(Jc_2_rrrrs_t_3, _rrrrs),
             "Jc_3_rrrrs_zz": np.broadcast_to(Jc_3_rrrrs_zz, _rrrrs),
             "Kd_3_rrrrs_t": np.broadcast_to(Kd_3_rrrrs_t, _rrrrs),
             "Kd_3_rrrrs_t_2": np.broadcast_to(Kd_3_rrrrs_t_2, _rrrrs),
@@ -954,7 +946,6 @@ def _prepare(p):
             "h_4_rrrrs_x": np.broadcast_to(h_4_rrrrs_x, _rrrrs),
             "h_4_rrrrs_y": np.broadcast_to(h_4_rrrrs_y, _rrrrs),
             "h_4_rrrrs_z": np.broadcast_to(h_4_rrrrs_z, _rrrrs),
-            "hc_2_rrrrs_t": np.broadcast_to(hc_2_rrrrs_t, _rrrrs),
             "inv_rrrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrrs_platform_joint_offset_x, _rrrrs),
             "inv_size_rrrrs_t_7": np.broadcast_to(inv_size_rrrrs_t_7, _rrrrs),
             "inv_size_rrrrs_t_8": np.broadcast_to(inv_size_rrrrs_t_8, _rrrrs),
@@ -1000,7 +991,6 @@ def _prepare(p):
             "J_3_rrrs_yy": np.broadcast_to(J_3_rrrs_yy, _rrrs),
             "J_3_rrrs_yz": np.broadcast_to(J_3_rrrs_yz, _rrrs),
             "J_3_rrrs_zz": np.broadcast_to(J_3_rrrs_zz, _rrrs),
-            "Jc_1_rrrs_t": np.broadcast_to(Jc_1_rrrs_t, _rrrs),
             "Jc_2_rrrs_zz": np.broadcast_to(Jc_2_rrrs_zz, _rrrs),
             "Kd_2_rrrs_t": np.broadcast_to(Kd_2_rrrs_t, _rrrs),
             "Kd_2_rrrs_t_2": np.broadcast_to(Kd_2_rrrs_t_2, _rrrs),
@@ -1212,7 +1202,7 @@ def _run_block(plan, p, vectors, outputs):
     return ok
 
 
-# dynamics: 1547 mul, 1205 add, 12 div, 6 sqrt, 2 trig
+# dynamics: 1538 mul, 1196 add, 12 div, 6 sqrt, 2 trig
 def _dynamics_before(c, X, V, f):
     (
     J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
@@ -1325,20 +1315,19 @@ def _dynamics_rrrrs(c, k, x, s, f):
     J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
         J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy, J_3_rrrrs_yz,
         J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz, J_4_rrrrs_zz,
-        Jc_1_rrrrs_t, Jc_2_rrrrs_t_2, Jc_2_rrrrs_t_3, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
+        Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
         Sigma_2_rrrrs_xx, Sigma_2_rrrrs_yy, Sigma_2_rrrrs_zz, Sigma_3_rrrrs_xx, Sigma_3_rrrrs_yy,
         Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs,
         branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y, d_c_rrrrs_yy,
         d_phi_4_rrrrs_t, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x,
         h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-        h_4_rrrrs_z, hc_2_rrrrs_t, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7,
-        inv_size_rrrrs_t_8, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
-        rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
-        rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
-        rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
-        rrrrs_joint4_offset_x, rrrrs_link3_mass, rrrrs_platform_joint_offset_x,
-        rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs,
-        size_rrrrs_t_8,
+        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8,
+        rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+        rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+        rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+        rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs = x
     (
@@ -1503,24 +1492,16 @@ def _dynamics_rrrrs(c, k, x, s, f):
     h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
     h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
     # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x)
-    Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t
+    Jc_2_rrrrs_t_3 = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t + h_3_rrrrs_r0_x)
+    Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t_3
     Jc_2_rrrrs_xy = (
     J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs - h_3_rrrrs_r0_y*rrrrs_joint3_offset_x
     )
-    # (rrrrs-N33) first moment of the links from 2 outwards
-    hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t
-    hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y
-    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
     _y_3 = (
-    s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t -
+    s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t_3 -
         _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) - c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs -
         c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 + c_3_rrrrs*(Jc_3_rrrrs_t +
         Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 + Jc_3_rrrrs_xx*s_3_rrrrs)))
-    )
-    # (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrrrs_t_2 = (
-    rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs - c_2_rrrrs_t*hc_2_rrrrs_y)
     )
     # (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit
     L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x
@@ -1946,7 +1927,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y - d_G_rrrrs_t*r_2_rrrrs_r1_x
     d_P_2_rrrrs_z = (
     d_G_rrrrs_xz*r_2_rrrrs_r1_y + inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 -
-        Jc_2_rrrrs_t_3) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
+        Jc_2_rrrrs_t_2) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
     )
     d_P_2_rrrrs_in_base_x = (
     axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
@@ -2028,12 +2009,12 @@ def _dynamics_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_3_rrrs_xx,
-        J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_1_rrrs_t,
-        Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy,
-        Sigma_2_rrrs_zz, Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs,
-        branch_2_rrrs, d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, g_r0_x_2,
-        g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z,
-        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
+        J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_2_rrrs_zz,
+        Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
+        Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs,
+        d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, g_r0_x_2, g_r0_y_2,
+        g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x,
+        h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
         inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
@@ -2168,8 +2149,6 @@ def _dynamics_rrrs(c, k, x, s, f):
         J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 - J_3_rrrs_xx*s_3_rrrs))) -
         s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx + _x_7*c_3_rrrs + _x_8*s_3_rrrs))
     )
-    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y - h_2_rrrs_x*s_2_rrrs)
     # (rrrs-V7) reciprocal vector 1
     inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
     # (rrrs-V8) reciprocal vector 2
@@ -2560,7 +2539,7 @@ def _dynamics_after(c, s, t, f):
     )
 
 
-# M: 768 mul, 589 add, 12 div, 6 sqrt, 2 trig
+# M: 759 mul, 580 add, 12 div, 6 sqrt, 2 trig
 def _M_before(c, X, f):
     (
     J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
@@ -2636,17 +2615,16 @@ def _M_rrrrs(c, k, x, s, f):
     J_1_rrrrs_xx, J_2_rrrrs_xx, J_2_rrrrs_xy, J_2_rrrrs_xz, J_2_rrrrs_yy, J_2_rrrrs_yz,
         J_2_rrrrs_zz, J_3_rrrrs_xx, J_3_rrrrs_xy, J_3_rrrrs_xz, J_3_rrrrs_yy, J_3_rrrrs_yz,
         J_4_rrrrs_xx, J_4_rrrrs_xy, J_4_rrrrs_xz, J_4_rrrrs_yy, J_4_rrrrs_yz, J_4_rrrrs_zz,
-        Jc_1_rrrrs_t, Jc_2_rrrrs_t_2, Jc_2_rrrrs_t_3, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2,
-        branch_1_rrrrs, branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y,
-        d_c_rrrrs_yy, d_phi_4_rrrrs_t, h_2_rrrrs_x, h_2_rrrrs_y, h_3_rrrrs_x, h_3_rrrrs_y,
-        h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z, hc_2_rrrrs_t, inv_rrrrs_platform_joint_offset_x,
-        inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t, rrrrs_base_frame_xx,
-        rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy,
-        rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz,
-        rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x,
-        rrrrs_joint3_offset_x, rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x,
-        rrrrs_platform_point_x, rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs,
-        size_rrrrs_t_8,
+        Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs,
+        branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y, d_c_rrrrs_yy,
+        d_phi_4_rrrrs_t, h_3_rrrrs_x, h_3_rrrrs_y, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z,
+        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t,
+        rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
+        rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
+        rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
+        rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
     ) = k
     y_2_extra_rrrrs, = x
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -2808,24 +2786,16 @@ def _M_rrrrs(c, k, x, s, f):
     h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
     h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
     # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
-    Jc_2_rrrrs_t = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t_2 + h_3_rrrrs_r0_x)
-    Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t
+    Jc_2_rrrrs_t_3 = rrrrs_joint3_offset_x*(Jc_2_rrrrs_t + h_3_rrrrs_r0_x)
+    Jc_2_rrrrs_t_4 = 2.0*Jc_2_rrrrs_t_3
     Jc_2_rrrrs_xy = (
     J_2_rrrrs_xy + _x_4*s_3_rrrrs + _x_5*c_3_rrrrs - h_3_rrrrs_r0_y*rrrrs_joint3_offset_x
     )
-    # (rrrrs-N33) first moment of the links from 2 outwards
-    hc_2_rrrrs_x = h_2_rrrrs_x + h_3_rrrrs_r0_x + hc_2_rrrrs_t
-    hc_2_rrrrs_y = h_2_rrrrs_y + h_3_rrrrs_r0_y
-    # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
     _y_3 = (
-    s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t -
+    s_2_rrrrs*(s_2_rrrrs*(J_2_rrrrs_xx + Jc_2_rrrrs_t_4 + _x_4*c_3_rrrrs - 2.0*Jc_2_rrrrs_t_3 -
         _x_5*s_3_rrrrs) - Jc_2_rrrrs_xy*c_2_rrrrs_t) - c_2_rrrrs_t*(Jc_2_rrrrs_xy*s_2_rrrrs -
         c_2_rrrrs_t*(J_2_rrrrs_yy + Jc_2_rrrrs_t_4 + c_3_rrrrs*(Jc_3_rrrrs_t +
         Jc_3_rrrrs_yy*c_3_rrrrs) + s_3_rrrrs*(Jc_3_rrrrs_t_2 + Jc_3_rrrrs_xx*s_3_rrrrs)))
-    )
-    # (rrrrs-N40) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrrrs_t_2 = (
-    rrrrs_joint2_offset_x*(Jc_1_rrrrs_t + hc_2_rrrrs_x*s_2_rrrrs - c_2_rrrrs_t*hc_2_rrrrs_y)
     )
     # (rrrrs-N29) moment about joint 2 that accelerates joint 3, per unit
     L_c3_2_rrrrs_z = Jc_3_rrrrs_zz + h_3_rrrrs_r0_x*rrrrs_joint3_offset_x
@@ -2947,7 +2917,7 @@ def _M_rrrrs(c, k, x, s, f):
     d_P_2_rrrrs_y = d_Gamma_3_rrrrs_y + d_G_rrrrs_xy*r_2_rrrrs_r1_y - d_G_rrrrs_t*r_2_rrrrs_r1_x
     d_P_2_rrrrs_z = (
     d_G_rrrrs_xz*r_2_rrrrs_r1_y + inv_v_1_rrrrs_z*(s_2_rrrrs*(J_2_rrrrs_xz + _x_6 -
-        Jc_2_rrrrs_t_3) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
+        Jc_2_rrrrs_t_2) - c_2_rrrrs_t*(J_2_rrrrs_yz + _y_2)) - d_G_rrrrs_t_2*r_2_rrrrs_r1_x
     )
     d_P_2_rrrrs_in_base_x = (
     axis_x_rrrrs_axes4_x*d_P_2_rrrrs_x + axis_y_rrrrs_axes4_in_base_x*d_P_2_rrrrs_y +
@@ -3010,16 +2980,16 @@ def _M_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     J_1_rrrs_xx, J_2_rrrs_xx, J_2_rrrs_xy, J_2_rrrs_xz, J_2_rrrs_yy, J_2_rrrs_yz, J_3_rrrs_xx,
-        J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_1_rrrs_t,
-        Jc_2_rrrs_zz, Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, d_Gamma_2_rrrs_t,
-        d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, h_2_rrrs_x, h_2_rrrs_y, h_3_rrrs_x,
-        h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
-        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_2_rrrs_zz,
+        Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, d_Gamma_2_rrrs_t,
+        d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z,
+        inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6, inv_size_rrrs_t_7, rho2_2_rrrs_t,
+        rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
+        rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
+        rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
+        rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
+        rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
+        size_rrrs_t_8,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -3145,8 +3115,6 @@ def _M_rrrs(c, k, x, s, f):
         J_3_rrrs_t) - s_3_rrrs*(J_3_rrrs_t_2 - J_3_rrrs_xx*s_3_rrrs))) -
         s_2_rrrs*(-Jc_2_rrrs_xy*c_2_rrrs - s_2_rrrs*(J_2_rrrs_xx + _x_7*c_3_rrrs + _x_8*s_3_rrrs))
     )
-    # (rrrs-N24) inertia tensor of the links from 1 outwards about joint 1
-    Jc_1_rrrs_t_2 = rrrs_joint2_offset_x*(Jc_1_rrrs_t - c_2_rrrs*h_2_rrrs_y - h_2_rrrs_x*s_2_rrrs)
     # (rrrs-V7) reciprocal vector 1
     inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
     # (rrrs-V8) reciprocal vector 2
@@ -8012,23 +7980,22 @@ arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
 ('J_1_rrrrs_xx', 'J_2_rrrrs_xx', 'J_2_rrrrs_xy', 'J_2_rrrrs_xz', 'J_2_rrrrs_yy', 'J_2_rrrrs_yz',
             'J_2_rrrrs_zz', 'J_3_rrrrs_xx', 'J_3_rrrrs_xy', 'J_3_rrrrs_xz', 'J_3_rrrrs_yy',
             'J_3_rrrrs_yz', 'J_4_rrrrs_xx', 'J_4_rrrrs_xy', 'J_4_rrrrs_xz', 'J_4_rrrrs_yy',
-            'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Jc_1_rrrrs_t', 'Jc_2_rrrrs_t_2', 'Jc_2_rrrrs_t_3',
-            'Jc_3_rrrrs_zz', 'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'Sigma_2_rrrrs_xx',
-            'Sigma_2_rrrrs_yy', 'Sigma_2_rrrrs_zz', 'Sigma_3_rrrrs_xx', 'Sigma_3_rrrrs_yy',
-            'Sigma_3_rrrrs_zz', 'Sigma_4_rrrrs_xx', 'Sigma_4_rrrrs_yy', 'Sigma_4_rrrrs_zz',
-            'branch_1_rrrrs', 'branch_3_rrrrs', 'd_G_rrrrs_t', 'd_Gamma_3_rrrrs_t',
-            'd_Gamma_3_rrrrs_y', 'd_c_rrrrs_yy', 'd_phi_4_rrrrs_t', 'g_r0_x', 'g_r0_y', 'g_r0_z',
-            'h_1_rrrrs_y', 'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_2_rrrrs_z',
-            'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x', 'h_4_rrrrs_y',
-            'h_4_rrrrs_z', 'hc_2_rrrrs_t', 'inv_rrrrs_platform_joint_offset_x',
-            'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
-            'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx',
-            'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx',
-            'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz', 'rrrrs_base_point_x',
-            'rrrrs_base_point_y', 'rrrrs_base_point_z', 'rrrrs_joint2_offset_x',
-            'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x', 'rrrrs_link3_mass',
-            'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Jc_2_rrrrs_t', 'Jc_2_rrrrs_t_2', 'Jc_3_rrrrs_zz',
+            'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'Sigma_2_rrrrs_xx', 'Sigma_2_rrrrs_yy',
+            'Sigma_2_rrrrs_zz', 'Sigma_3_rrrrs_xx', 'Sigma_3_rrrrs_yy', 'Sigma_3_rrrrs_zz',
+            'Sigma_4_rrrrs_xx', 'Sigma_4_rrrrs_yy', 'Sigma_4_rrrrs_zz', 'branch_1_rrrrs',
+            'branch_3_rrrrs', 'd_G_rrrrs_t', 'd_Gamma_3_rrrrs_t', 'd_Gamma_3_rrrrs_y',
+            'd_c_rrrrs_yy', 'd_phi_4_rrrrs_t', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_rrrrs_y',
+            'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_2_rrrrs_z', 'h_3_rrrrs_x',
+            'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z',
+            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
+            'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
+            'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
+            'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
+            'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
+            'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
+            'rrrrs_link3_mass', 'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x',
+            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
 (('X', (7,)), ('V', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -8069,19 +8036,19 @@ arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
 (),
 ('J_1_rrrs_xx', 'J_2_rrrs_xx', 'J_2_rrrs_xy', 'J_2_rrrs_xz', 'J_2_rrrs_yy', 'J_2_rrrs_yz',
             'J_3_rrrs_xx', 'J_3_rrrs_xy', 'J_3_rrrs_xz', 'J_3_rrrs_yy', 'J_3_rrrs_yz',
-            'J_3_rrrs_zz', 'Jc_1_rrrs_t', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2',
-            'Sigma_2_rrrs_xx', 'Sigma_2_rrrs_yy', 'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx',
-            'Sigma_3_rrrs_yy', 'Sigma_3_rrrs_zz', 'branch_1_rrrs', 'branch_2_rrrs',
-            'd_Gamma_2_rrrs_t', 'd_Gamma_2_rrrs_y', 'd_c_rrrs_yy', 'd_phi_3_rrrs_t', 'g_r0_x_2',
-            'g_r0_y_2', 'g_r0_z_2', 'h_1_rrrs_y', 'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y',
-            'h_2_rrrs_z', 'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
-            'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
-            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
-            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
-            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
-            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'J_3_rrrs_zz', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'Sigma_2_rrrs_xx',
+            'Sigma_2_rrrs_yy', 'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx', 'Sigma_3_rrrs_yy',
+            'Sigma_3_rrrs_zz', 'branch_1_rrrs', 'branch_2_rrrs', 'd_Gamma_2_rrrs_t',
+            'd_Gamma_2_rrrs_y', 'd_c_rrrs_yy', 'd_phi_3_rrrs_t', 'g_r0_x_2', 'g_r0_y_2',
+            'g_r0_z_2', 'h_1_rrrs_y', 'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z',
+            'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x',
+            'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx',
+            'rrrs_base_frame_xy', 'rrrs_base_frame_xz', 'rrrs_base_frame_yx',
+            'rrrs_base_frame_yy', 'rrrs_base_frame_yz', 'rrrs_base_frame_zx',
+            'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y',
+            'rrrs_base_point_z', 'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x',
+            'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
+            'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -8132,11 +8099,10 @@ arrays=(('M', (7, 7)),),
 ('J_1_rrrrs_xx', 'J_2_rrrrs_xx', 'J_2_rrrrs_xy', 'J_2_rrrrs_xz', 'J_2_rrrrs_yy', 'J_2_rrrrs_yz',
             'J_2_rrrrs_zz', 'J_3_rrrrs_xx', 'J_3_rrrrs_xy', 'J_3_rrrrs_xz', 'J_3_rrrrs_yy',
             'J_3_rrrrs_yz', 'J_4_rrrrs_xx', 'J_4_rrrrs_xy', 'J_4_rrrrs_xz', 'J_4_rrrrs_yy',
-            'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Jc_1_rrrrs_t', 'Jc_2_rrrrs_t_2', 'Jc_2_rrrrs_t_3',
-            'Jc_3_rrrrs_zz', 'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs',
-            'd_G_rrrrs_t', 'd_Gamma_3_rrrrs_t', 'd_Gamma_3_rrrrs_y', 'd_c_rrrrs_yy',
-            'd_phi_4_rrrrs_t', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_3_rrrrs_x', 'h_3_rrrrs_y',
-            'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z', 'hc_2_rrrrs_t',
+            'J_4_rrrrs_yz', 'J_4_rrrrs_zz', 'Jc_2_rrrrs_t', 'Jc_2_rrrrs_t_2', 'Jc_3_rrrrs_zz',
+            'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'd_G_rrrrs_t',
+            'd_Gamma_3_rrrrs_t', 'd_Gamma_3_rrrrs_y', 'd_c_rrrrs_yy', 'd_phi_4_rrrrs_t',
+            'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z',
             'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
             'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
             'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
@@ -8170,17 +8136,16 @@ arrays=(('M', (7, 7)),),
 (),
 ('J_1_rrrs_xx', 'J_2_rrrs_xx', 'J_2_rrrs_xy', 'J_2_rrrs_xz', 'J_2_rrrs_yy', 'J_2_rrrs_yz',
             'J_3_rrrs_xx', 'J_3_rrrs_xy', 'J_3_rrrs_xz', 'J_3_rrrs_yy', 'J_3_rrrs_yz',
-            'J_3_rrrs_zz', 'Jc_1_rrrs_t', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2',
-            'branch_1_rrrs', 'branch_2_rrrs', 'd_Gamma_2_rrrs_t', 'd_Gamma_2_rrrs_y',
-            'd_c_rrrs_yy', 'd_phi_3_rrrs_t', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_3_rrrs_x',
-            'h_3_rrrs_y', 'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6',
-            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
-            'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
-            'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
-            'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
-            'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
-            'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z',
-            'size_rrrs', 'size_rrrs_t_8'),
+            'J_3_rrrs_zz', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs',
+            'branch_2_rrrs', 'd_Gamma_2_rrrs_t', 'd_Gamma_2_rrrs_y', 'd_c_rrrs_yy',
+            'd_phi_3_rrrs_t', 'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
+            'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
+            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
+            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
+            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
+            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,

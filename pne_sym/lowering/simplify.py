@@ -58,7 +58,21 @@ def inline_single_use(
                 statement.hint,
             )
         )
-    return kept
+    return _needed(kept, stores, guards)
+
+
+def _needed(
+    statements: list[Statement], stores: list[tuple[Stage, Store]], guards: list[Any]
+) -> list[Statement]:
+    """The statements that are still used: terms may cancel where a value is put in place."""
+    wanted = {s for _, store in stores for s in sp.sympify(store.value).free_symbols}
+    wanted |= {s for g in guards for s in (*g.value.free_symbols, *g.scale.free_symbols)}
+    found: list[Statement] = []
+    for statement in reversed(statements):
+        if statement.target in wanted:
+            found.append(statement)
+            wanted |= statement.expr.free_symbols
+    return found[::-1]
 
 
 def numbered(statements: list[Statement], reserved: set[str]) -> dict[Any, Any]:
