@@ -225,7 +225,7 @@ class DynamicsWriter:
         bodies: list[LinkBody],
     ) -> None:
         self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
-        self.write = LinearWriter(book, g, motion, collects=not g.composite)
+        self.write = LinearWriter(book, g, motion)
         self.bodies = bodies
         self.zero: LinearForm = LinearForm({}, ZeroVector)
 
@@ -242,7 +242,6 @@ class DynamicsWriter:
         relative = self._relative_acceleration(body)
         turning: Any = ZeroVector
         if body.group:
-            self.write.collects = body.at_tip or not g.composite
             turning = self.write.define(
                 f"phi_{j}",
                 Cross(alpha, h) + Cross(omega, Cross(omega, h)),
@@ -255,15 +254,14 @@ class DynamicsWriter:
                 forms=(tensor @ h,),
                 rest_forms=(tensor_rest @ h,),
                 reference="Eq. 1",
+                collected=body.at_tip or not g.composite,
             )
-            self.write.collects = not g.composite
         return turning, relative
 
     def _relative_acceleration(self, body: LinkBody) -> Any:
         """Acceleration of the reference point minus gravity."""
         g, motion, j = self.g, self.motion, body.joint
         frame = g.frame("axes", body.group)
-        self.write.collects = body.at_tip or not g.composite
         if body.at_tip:
             rhs = motion.S_ddot - self.p.gravity
             forms: tuple[Any, ...] = ()
@@ -289,6 +287,7 @@ class DynamicsWriter:
             forms=forms,
             rest_forms=rests,
             reference="Eqs. 10, 11, 17, 18",
+            collected=body.at_tip or not g.composite,
         )
 
     def group_moment(self, group: int, relative: dict[int, Any]) -> Any:
@@ -349,6 +348,7 @@ class DynamicsWriter:
                 ),
             ),
             reference="Eq. 2",
+            collected=not g.composite,
         )
 
     def _gathered_moments(self, members: list[LinkBody], relative: dict[int, Any]) -> Any:
@@ -446,11 +446,10 @@ class DynamicsWriter:
         )
         self.tip_moment = Cross(tip.first_moment, relative[tip.joint]) if tip else ZeroVector
         gamma = self._recursion(forces, relative)
-        self.write.collects = True
         result = LegDynamics(self.bodies, tip.mass if tip else sp.S.Zero)
         self._solve(result, gamma, phi_tip, relative.get(tip.joint) if tip else None)
         for j in motion.ydd:
-            self._extra_row(result, j, gamma, phi_tip)
+            self._extra_row(result, j, gamma)
         return result
 
     def _link_force(self, body: LinkBody, turning: Any, acceleration: Any) -> Any:
@@ -465,6 +464,7 @@ class DynamicsWriter:
             coefficient_latex=rf"\mathbf F'_{{{j}}}",
             body=self.g.frame("axes", body.group),
             reference="Eq. 1",
+            collected=not self.g.composite,
         )
 
     def _recursion(self, forces: dict[int, Any], relative: dict[int, Any]) -> dict[int, Any]:
@@ -524,6 +524,7 @@ class DynamicsWriter:
             coefficient_latex=rf"\mathbf D_{{{group}}}",
             body=g.frame("axes", group),
             reference="Sec. 2.5, step 1.3",
+            collected=not g.composite,
         )
 
     def _sum_force(self, j: int, outer: Any, own: Any, frame: str) -> Any:
@@ -539,6 +540,7 @@ class DynamicsWriter:
             unit="N",
             coefficient_latex=rf"\mathbf C_{{{j}}}",
             body=frame,
+            collected=not self.g.composite,
         )
 
     def _freedom(self, j: int, component: Any) -> Any:
@@ -698,7 +700,7 @@ class DynamicsWriter:
         )
         result.moment, result.moment_form = c, self.motion.known.get(c, LinearForm({}, c))
 
-    def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any], phi: Any) -> None:
+    def _extra_row(self, result: LegDynamics, j: int, gamma: dict[int, Any]) -> None:
         """Equilibrium along an extra joint: a row of its own (Eqs. 6, 7)."""
         g, motion = self.g, self.motion
         row = gamma[j] - Dot(motion.v[j], self.G)
@@ -715,4 +717,3 @@ class DynamicsWriter:
             reference="Eqs. 6, 7",
         )
         result.extra_rows[j] = (symbol, motion.known[symbol])
-        del phi

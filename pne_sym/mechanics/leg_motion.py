@@ -109,13 +109,10 @@ def _mark(unknown: Any) -> str:
 class LinearWriter:
     """Defines quantities that depend on the acceleration, with their linear forms."""
 
-    def __init__(
-        self, book: Book, g: LegGeometry, motion: LegMotion, *, collects: bool = True
-    ) -> None:
+    def __init__(self, book: Book, g: LegGeometry, motion: LegMotion) -> None:
         self.book = book
         self.g = g
         self.motion = motion
-        self.collects = collects
 
     def define(
         self,
@@ -131,21 +128,22 @@ class LinearWriter:
         forms: Sequence[Any] = (),
         rest_forms: Sequence[Any] = (),
         reference: str = "",
+        collected: bool = True,
         accelerated: Any = None,
     ) -> Any:
         """Define x = rhs, its coefficients and its remainder; returns x.
 
-        Where the writer does not collect, the coefficients are those of `accelerated`, an
-        expression that depends on the acceleration as x does (none: nobody needs them).
+        The coefficients are those of `accelerated`, an expression that depends on the
+        acceleration as x does (default: rhs itself).  If not `collected`, nobody needs them.
         """
         book, g, motion = self.book, self.g, self.motion
         name = g.name(stem)
         form = linear_form(rhs, motion.unknowns, motion.known)
-        if accelerated is not None:
-            collected = linear_form(accelerated, motion.unknowns, motion.known)
-            form = replace(collected, remainder=form.remainder)
-        elif not self.collects:
+        if not collected:
             form = LinearForm({}, form.remainder)
+        elif accelerated is not None:
+            other = linear_form(accelerated, motion.unknowns, motion.known)
+            form = replace(other, remainder=form.remainder)
         symbol = book.define(
             name, rhs, latex, title, law, unit=unit, body=body, forms=forms, reference=reference
         )
@@ -185,7 +183,7 @@ class LinearWriter:
                 reference="Sec. 2.3, Eq. 4",
             )
         motion.known[symbol] = LinearForm(coefficients, remainder)
-        if self.collects or accelerated is not None:
+        if collected:
             book.collect(name, motion.known[symbol], form)
         else:
             book.collect_no_coefficients(name)
@@ -645,7 +643,6 @@ class MotionWriter:
         )
         bias = self._bias()
         self._joint_accelerations(writer, bias)
-        writer.collects = not self.g.composite
         self._angular_accelerations(writer)
         self._origin_accelerations(writer)
 
@@ -827,6 +824,7 @@ class MotionWriter:
                 unit="rad/s^2",
                 coefficient_latex=rf"\boldsymbol\Omega_{{{j}}}",
                 body=frame,
+                collected=not g.composite or j == g.group[g.count],
                 accelerated=self._turning(j),
             )
             tensors = []
@@ -902,4 +900,5 @@ class MotionWriter:
                 body=g.frame("axes", previous),
                 forms=(form,),
                 rest_forms=(rest,),
+                collected=not g.composite,
             )
