@@ -1307,13 +1307,13 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
+        /* (upru-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
+        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         const real w_1_t_3 = inv_v_1_r0_y*s_4;
@@ -2196,13 +2196,13 @@ INLINE void M_legs_upru(const prepared *m, size_t leg, size_t legs, const M_valu
         const real L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
+        /* (upru-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
+        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         const real w_1_t_3 = inv_v_1_r0_y*s_4;
@@ -2885,13 +2885,13 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
+        /* (upru-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
+        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
@@ -3700,13 +3700,13 @@ INLINE void required_legs_upru(const prepared *m, size_t leg, size_t legs, const
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
+        /* (upru-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
+        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
@@ -4436,10 +4436,10 @@ INLINE void joint_rates_legs_upru(const prepared *m, size_t leg, size_t legs, co
             axis_y_upru_axes4_r4_y*upru_base_frame_zy + upru_base_frame_zz*v_1_t_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
-        /* (upru-V7) force part of reciprocal wrench 1 */
-        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V3) velocity of the connection point per rate of joint 1 */
         const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
+        /* (upru-V7) force part of reciprocal wrench 1 */
+        const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V1) velocity of the connection point */
         const real S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y;
         const real S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z;
@@ -4777,13 +4777,13 @@ INLINE void joint_accelerations_legs_upru(const prepared *m, size_t leg, size_t 
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
+        /* (upru-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
+        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */
@@ -5205,13 +5205,13 @@ INLINE void legs_legs_upru(const prepared *m, size_t leg, size_t legs, const leg
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4;
         const real end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4;
+        /* (upru-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
+        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2;
         /* (upru-V6) direction 1 of the moment that the platform joint transmits */
         const real n_m1_t = end_p1_r3_x*s_4;
-        /* (upru-V3) velocity of the connection point per rate of joint 1 */
-        const real v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4;
-        const real v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3;
         /* (upru-V7) force part of reciprocal wrench 1 */
         const real inv_v_1_r0_y = 1/v_1_r0_y;
         /* (upru-V13) force part of reciprocal wrench 4 */

@@ -965,13 +965,13 @@ def _dynamics_upru(c, k, x, s, f):
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
     end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
+    # (upru-V3) velocity of the connection point per rate of joint 1
+    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
+    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     n_m1_t = end_p1_r3_x*s_4
-    # (upru-V3) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     w_1_t_3 = inv_v_1_r0_y*s_4
@@ -1618,13 +1618,13 @@ def _M_upru(c, k, x, s, f):
     L_c4_r2_y = J_4_xx*s_2 - _x_3*c_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
+    # (upru-V3) velocity of the connection point per rate of joint 1
+    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
+    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     n_m1_t = end_p1_r3_x*s_4
-    # (upru-V3) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     w_1_t_3 = inv_v_1_r0_y*s_4
@@ -2082,13 +2082,13 @@ def _Z_upru(c, k, x, s, f):
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
     end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
+    # (upru-V3) velocity of the connection point per rate of joint 1
+    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
+    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     n_m1_t = end_p1_r3_x*s_4
-    # (upru-V3) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     # (upru-V13) force part of reciprocal wrench 4
@@ -2650,13 +2650,13 @@ def _required_upru(c, k, x, s, f):
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
     end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
+    # (upru-V3) velocity of the connection point per rate of joint 1
+    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
+    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     n_m1_t = end_p1_r3_x*s_4
-    # (upru-V3) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     # (upru-V13) force part of reciprocal wrench 4
@@ -3189,10 +3189,10 @@ def _joint_rates_upru(c, k, x, s, f):
     )
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
-    # (upru-V7) force part of reciprocal wrench 1
-    w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V3) velocity of the connection point per rate of joint 1
     v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
+    # (upru-V7) force part of reciprocal wrench 1
+    w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V1) velocity of the connection point
     S_dot_x = t_dot_x + omega_y*q_in_base_z - omega_z*q_in_base_y
     S_dot_y = t_dot_y + omega_z*q_in_base_x - omega_x*q_in_base_z
@@ -3421,13 +3421,13 @@ def _joint_accelerations_upru(c, k, x, s, f):
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
     end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
+    # (upru-V3) velocity of the connection point per rate of joint 1
+    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
+    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     n_m1_t = end_p1_r3_x*s_4
-    # (upru-V3) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     # (upru-V13) force part of reciprocal wrench 4
@@ -3728,13 +3728,13 @@ def _legs_upru(c, k, x, s, f):
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     end_p1_r5_x = c_4*end_p1_r3_y + end_p1_r1_x*s_4
     end_p1_r5_y = c_4*end_p1_r1_x - end_p1_r3_y*s_4
+    # (upru-V3) velocity of the connection point per rate of joint 1
+    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
+    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     w_1_t_2 = end_p1_r3_x*v_1_t + end_p1_r5_x*s_2
     # (upru-V6) direction 1 of the moment that the platform joint transmits
     n_m1_t = end_p1_r3_x*s_4
-    # (upru-V3) velocity of the connection point per rate of joint 1
-    v_1_r0_x = c_4*v_1_t_3 - s_4*v_1_t_4
-    v_1_r0_y = c_4*v_1_t_4 + s_4*v_1_t_3
     # (upru-V7) force part of reciprocal wrench 1
     inv_v_1_r0_y = 1.0/v_1_r0_y
     # (upru-V13) force part of reciprocal wrench 4

@@ -9,42 +9,18 @@ of an equation the cheapest is taken.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Equation, ReciprocalBasis, names_in
-from pne_sym.lowering.builder import Atom, Builder, Undone
-from pne_sym.lowering.frames import ConstantStep, Frames, Triple
-from pne_sym.lowering.solve import Screws, solve, solve_transposed
+from pne_sym.lowering.bases import Bases
+from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.frames import Frames, Triple
+from pne_sym.lowering.rotation import XYZ, Rotation, Tensor9, cross, symmetrised
+from pne_sym.lowering.trials import NotYetError, Trials, atoms
 from pne_sym.vector import nodes as n
-
-Tensor9 = tuple[Triple, Triple, Triple]
-_MAX_TRIAL_DEPTH = 2
-_XYZ = "xyz"
-
-
-class _NotYetError(Exception):
-    """A value is asked for while it is being made: this way around does not lead there."""
-
-
-@dataclass(frozen=True)
-class _Trial:
-    """A value made on trial.
-
-    Attributes:
-        cost: run-time operations beyond what is live.
-        value: its components.
-        stored: entries of tables that were made with it.
-        forgotten: statements that were.
-    """
-
-    cost: float
-    value: Any
-    stored: list[tuple[dict[Any, Any], Any, Any]]
-    forgotten: Undone
 
 
 class Lowering:
@@ -60,85 +36,29 @@ class Lowering:
         self.b = builder
         self.definition: dict[str, Equation] = {e.name: e for e in derivation.equations()}
         self.given = {g.symbol: g for g in derivation.givens}
-        self.frames = Frames(derivation, builder, self.vector, self.scalar, self._store)
+        self.trials = Trials(builder)
         self.home: dict[str, str] = {}
         self._vectors: dict[tuple[str, str], Triple] = {}
         self._tensors: dict[tuple[str, str], Tensor9] = {}
         self._scalars: dict[str, Atom] = {}
-        self._undo: list[tuple[dict[Any, Any], Any]] = []
-        self._depth = 0
         self._in_progress: set[str] = set()
-        self._dual = {
-            w.name: (basis, k)
-            for basis in derivation.bases
-            if len(basis.duals) == len(basis.vectors)
-            for k, w in enumerate(basis.duals)
-        }
-        self._dual_amount = {
-            amount.name: (basis, k, i)
-            for basis in derivation.bases
-            if len(basis.duals) == len(basis.vectors)
-            for k, amounts in enumerate(basis.moment_duals)
-            for i, amount in enumerate(amounts)
-        }
-        self._named_parts = {
-            (e.rhs.args[0].name, e.rhs.args[1]): e.name
-            for e in derivation.equations()
-            if isinstance(e.rhs, n.Dot) and getattr(e.rhs.args[0], "name", "") in self._dual
-        }
-        self._basis_frame: dict[int, str] = {}
-        self._screws: dict[int, Screws] = {}
-        self._axis_columns: dict[tuple[str, str, int], Triple] = {}
-
-    # ---- keeping and forgetting --------------------------------------------------------
-
-    def _store(self, table: dict[Any, Any], key: Any, value: Any) -> Any:
-        table[key] = value
-        self._undo.append((table, key))
-        return value
-
-    def _attempt(self, make: Callable[[], Any]) -> _Trial:
-        """Make a value and forget it; its cost is infinite if it needs what is not known yet."""
-        mark, undo, equation = self.b.mark(), len(self._undo), self.b.equation
-        depth, self._depth = self._depth, self._depth + 1
-        value: Any = None
-        cost = float("inf")
-        try:
-            value = make()
-            cost = self.b.cost(_atoms(value))
-        except _NotYetError:
-            pass
-        self._depth = depth
-        stored = [(table, key, table.get(key)) for table, key in self._undo[undo:]]
-        for table, key, _ in stored:
-            table.pop(key, None)
-        del self._undo[undo:]
-        forgotten = self.b.rollback(mark)
-        self.b.equation = equation
-        return _Trial(cost, value, stored, forgotten)
-
-    def _adopt(self, trial: _Trial) -> Any:
-        """The value of a trial, made for good: nothing may have been made since."""
-        self.b.redo(trial.forgotten)
-        for table, key, value in trial.stored:
-            self._store(table, key, value)
-        return trial.value
-
-    def cheapest(self, makers: Sequence[Callable[[], Any]]) -> Any:
-        """The value of the cheapest way; ties go to the first."""
-        if len(makers) == 1:
-            return makers[0]()
-        if self._depth < _MAX_TRIAL_DEPTH:
-            costs = [self._attempt(make).cost for make in makers]
-            # Made anew: its own choices are then tried as deep as this one.
-            return makers[costs.index(min(costs))]()
-        for make in makers:
-            trial = self._attempt(make)
-            if trial.cost < float("inf"):
-                return self._adopt(trial)
-        return makers[0]()
+        frames = Frames(derivation, builder, self.vector, self.scalar, self.trials.store)
+        self.rotation = Rotation(builder, frames, self.trials, self._vectors, self.definition)
+        self.bases = Bases(derivation, builder, self.trials, self.vector, self.scalar, self.ensure)
 
     # ---- named quantities --------------------------------------------------------------
+
+    def form_tip_axes(self) -> None:
+        """Form the axes of each leg's last link in base axes before anything else."""
+        for basis in self.d.bases:
+            frame = basis.frames[0]
+            for vector in basis.vectors:
+                self.ensure(getattr(vector, "name", ""))
+            names = (getattr(w, "name", "") for w in basis.duals)
+            self.b.equation = next(self.definition[w].id for w in names if w in self.definition)
+            along = [k for k in range(3) if self.rotation.along(frame, "base", k) is not None]
+            for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:
+                self.b.keep(self.rotation.axis_column(frame, "base", k))
 
     def equation_of(self, expr: Any) -> str:
         """Id of the equation to which an expression belongs: its latest name's.
@@ -154,7 +74,7 @@ class Lowering:
         if name in self.home or name in self._scalars or name not in self.definition:
             return
         if name in self._in_progress:
-            raise _NotYetError(name)
+            raise NotYetError(name)
         self._in_progress.add(name)
         before = self.b.equation
         try:
@@ -185,7 +105,7 @@ class Lowering:
             self.b.keep([self._scalars[name]])
         elif name in self.home:
             key = (name, self.home[name])
-            self.b.keep(_atoms(self._vectors.get(key, self._tensors.get(key, ()))))
+            self.b.keep(atoms(self._vectors.get(key, self._tensors.get(key, ()))))
 
     def _lower(self, equation: Equation) -> None:
         name, lhs = equation.name, equation.lhs
@@ -194,29 +114,29 @@ class Lowering:
             self._lower_scalar(name, forms)
             return
         frame = self._home_of(name, forms)
-        self._store(self.home, name, frame)
+        self.trials.store(self.home, name, frame)
         if isinstance(lhs, n.VectorSymbol):
-            if name in self._dual:
-                value = self._dual_vector(name, frame)
+            if name in self.bases.duals:
+                value = self._single(*self.bases.duals[name], frame)
             else:
-                value = self.cheapest([partial(self.vector, f, frame, name) for f in forms])
-            self._store(self._vectors, (name, frame), value)
+                value = self.trials.cheapest([partial(self.vector, f, frame, name) for f in forms])
+            self.trials.store(self._vectors, (name, frame), value)
         else:
-            value = self.cheapest([partial(self.tensor, f, frame, name) for f in forms])
+            value = self.trials.cheapest([partial(self.tensor, f, frame, name) for f in forms])
             if lhs.is_symmetric:
-                value = self._symmetrised(value)
-            self._store(self._tensors, (name, frame), value)
+                value = symmetrised(self.b, value)
+            self.trials.store(self._tensors, (name, frame), value)
 
     def _lower_scalar(self, name: str, forms: Sequence[Any]) -> None:
         makers = [lambda f=f: self.scalar(f, name) for f in forms]
-        self._store(self._scalars, name, self.cheapest(makers))
+        self.trials.store(self._scalars, name, self.trials.cheapest(makers))
 
     def _home_of(self, name: str, forms: Sequence[Any]) -> str:
         body = self.d.notation[name].body
         if body is not None:
             return body
         frames = self._frames_of(forms[0])
-        costs = [self._attempt(partial(self._any, forms[0], f)).cost for f in frames]
+        costs = [self.trials.attempt(partial(self._any, forms[0], f)).cost for f in frames]
         return frames[costs.index(min(costs))]
 
     def _all(self, vectors: Sequence[Any], frame: str) -> list[Triple]:
@@ -236,15 +156,6 @@ class Lowering:
                 frame = self.home[symbol.name]
             found[frame] = found.get(frame, 0) + 1
         return sorted(found, key=lambda f: (-found[f], f)) or ["base"]
-
-    def _symmetrised(self, t: Tensor9) -> Tensor9:
-        """Of each pair of equal entries the cheaper one."""
-        rows = [list(row) for row in t]
-        for i, j in ((0, 1), (0, 2), (1, 2)):
-            upper, lower = t[i][j], t[j][i]
-            best = lower if self.b.cost([lower]) < self.b.cost([upper]) else upper
-            rows[i][j] = rows[j][i] = best
-        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
 
     # ---- vectors -------------------------------------------------------------------------
 
@@ -267,25 +178,27 @@ class Lowering:
         if symbol in self.given:
             given = self.given[symbol]
             if given.frame == frame:
-                return self._store(self._vectors, key, given.components)  # type: ignore[no-any-return]
-            value = self.rotate(given.components, given.frame, frame, symbol.name)
-            return self._store(self._vectors, key, value)  # type: ignore[no-any-return]
+                return self.trials.store(self._vectors, key, given.components)
+            value = self.rotation.vector(given.components, given.frame, frame, symbol.name)
+            return self.trials.store(self._vectors, key, value)
         self.ensure(symbol.name)
         if key in self._vectors:
             return self._vectors[key]
         home = self.home[symbol.name]
-        makers = [lambda: self.rotate(self._vectors[symbol.name, home], home, frame, symbol.name)]
+        makers = [
+            lambda: self.rotation.vector(self._vectors[symbol.name, home], home, frame, symbol.name)
+        ]
         equation = self.definition[symbol.name]
-        if symbol.name not in self._dual:
+        if symbol.name not in self.bases.duals:
             makers += [
                 partial(self.vector, f, frame, symbol.name)
                 for f in (equation.rhs, *equation.forms)
                 if self._is_there(f, frame)
             ]
         before, self.b.equation = self.b.equation, equation.id
-        value = self.cheapest(makers)
+        value = self.trials.cheapest(makers)
         self.b.equation = before
-        return self._store(self._vectors, key, value)  # type: ignore[no-any-return]
+        return self.trials.store(self._vectors, key, value)
 
     def _is_there(self, expr: Any, frame: str) -> bool:
         """Whether all vectors of an expression have components in a frame already."""
@@ -296,123 +209,10 @@ class Lowering:
             for symbol in _symbols(expr)
         )
 
-    def rotate(self, v: Triple, origin: str, target: str, hint: str = "") -> Triple:
-        """Components of a vector in another frame: step by step, or by axis columns."""
-        if origin == target or all(c == 0 for c in v):
-            return v
-        makers = [lambda: self._by_steps(v, origin, target, hint)]
-        if origin == "base" and self._has_columns(target):
-            makers.append(lambda: self._by_rows(v, target, hint))
-        if target == "base" and origin != "platform":
-            makers.append(lambda: self._by_columns(v, origin, target, hint))
-        return self.cheapest(makers)  # type: ignore[no-any-return]
-
-    def _has_columns(self, frame: str) -> bool:
-        return all((frame, "base", k) in self._axis_columns for k in range(3))
-
-    def form_tip_axes(self) -> None:
-        """Form the axes of each leg's last link in base axes before anything else."""
-        for basis in self.d.bases:
-            frame = basis.frames[0]
-            for vector in basis.vectors:
-                self.ensure(getattr(vector, "name", ""))
-            names = (getattr(w, "name", "") for w in basis.duals)
-            self.b.equation = next(self.definition[w].id for w in names if w in self.definition)
-            along = [k for k in range(3) if self._vector_along(frame, "base", k) is not None]
-            for k in [*along, *(k for k in (2, 1, 0) if k not in along)]:
-                self.b.keep(self.axis_column(frame, "base", k))
-
-    def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
-        axes = [self.axis_column(frame, "base", k) for k in range(3)]
-        return tuple(
-            self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_tip_{_XYZ[k]}")
-            for k, axis in enumerate(axes)
-        )
-
-    def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
-        steps = self.frames.steps(origin, target)
-        for k, step in enumerate(steps):
-            last = k == len(steps) - 1
-            v = self.frames.apply(
-                step, v, f"{hint}_in_base" if last and target == "base" else f"{hint}_r{k}"
-            )
-        return v
-
-    def _by_columns(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
-        columns = [self.axis_column(origin, target, k) if v[k] != 0 else None for k in range(3)]
-        return tuple(
-            self.b.add(
-                [
-                    self.b.mul(v[k], column[i])
-                    for k, column in enumerate(columns)
-                    if column is not None
-                ],
-                f"{hint}_in_base_{_XYZ[i]}",
-            )
-            for i in range(3)
-        )
-
-    def axis_column(self, origin: str, target: str, k: int) -> Triple:
-        """Axis k of a frame in another: along a known vector, by cross product, or turned."""
-        key = (origin, target, k)
-        if key in self._axis_columns:
-            return self._axis_columns[key]
-        unit = [sp.S.Zero] * 3
-        unit[k] = sp.S.One
-        hint = f"axis_{_XYZ[k]}_{origin.replace('.', '_')}"
-        makers: list[Callable[[], Triple]] = [
-            lambda: self._by_steps((unit[0], unit[1], unit[2]), origin, target, hint)
-        ]
-        along = self._vector_along(origin, target, k)
-        if along is not None:
-            makers.append(along)
-        others = [(origin, target, (k + 1) % 3), (origin, target, (k + 2) % 3)]
-        if all(other in self._axis_columns for other in others):
-            a, c = (self._axis_columns[other] for other in others)
-            makers.append(lambda: self._cross(a, c, hint))
-        return self._store(self._axis_columns, key, self.cheapest(makers))  # type: ignore[no-any-return]
-
-    def _vector_along(self, origin: str, target: str, k: int) -> Callable[[], Triple] | None:
-        """A way by a vector whose only component in the origin frame is its k-th."""
-        for (name, frame), v in self._vectors.items():
-            if (
-                frame != origin
-                or v[k] == 0
-                or v[k].is_Number
-                or any(v[i] != 0 for i in range(3) if i != k)
-            ):
-                continue
-            same = self._same_vector(name, target)
-            if same is not None:
-                length = v[k]
-                return lambda: tuple(
-                    self.b.divide(c, length, f"axis_{_XYZ[k]}_{_XYZ[i]}")
-                    for i, c in enumerate(same)
-                )
-        return None
-
-    def _same_vector(self, name: str, target: str) -> Triple | None:
-        """Components in the target of a vector or of an equal one."""
-        if (name, target) in self._vectors:
-            return self._vectors[name, target]
-        if name in self.definition:
-            for form in self.definition[name].forms:
-                if isinstance(form, n.VectorSymbol) and (form.name, target) in self._vectors:
-                    return self._vectors[form.name, target]
-        return None
-
-    def _cross(self, a: Triple, c: Triple, hint: str = "") -> Triple:
-        b = self.b
-        return tuple(
-            b.add(
-                (b.mul(a[(i + 1) % 3], c[(i + 2) % 3]), -b.mul(a[(i + 2) % 3], c[(i + 1) % 3])),
-                f"{hint}_{_XYZ[i]}" if hint else "",
-            )
-            for i in range(3)
-        )
-
     def _vector_cross(self, expr: Any, frame: str, hint: str) -> Triple:
-        return self._cross(self.vector(expr.args[0], frame), self.vector(expr.args[1], frame), hint)
+        return cross(
+            self.b, self.vector(expr.args[0], frame), self.vector(expr.args[1], frame), hint
+        )
 
     def _vector_add(self, expr: Any, frame: str, hint: str) -> Triple:
         plain, duals = self._split_duals(expr.args)
@@ -423,7 +223,7 @@ class Lowering:
 
     def _sum(self, parts: Sequence[Triple], hint: str) -> Triple:
         return tuple(
-            self.b.add([p[i] for p in parts], f"{hint}_{_XYZ[i]}" if hint else "", named=bool(hint))
+            self.b.add([p[i] for p in parts], f"{hint}_{XYZ[i]}" if hint else "", named=bool(hint))
             for i in range(3)
         )
 
@@ -433,7 +233,7 @@ class Lowering:
         weights: dict[int, tuple[ReciprocalBasis, list[Any]]] = {}
         for term in terms:
             factor, vector = n.split_scale(term)
-            found = self._dual.get(getattr(vector, "name", ""))
+            found = self.bases.of(vector)
             if found is None:
                 plain.append(term)
                 continue
@@ -444,7 +244,7 @@ class Lowering:
 
     def _vector_scale(self, expr: Any, frame: str, hint: str) -> Triple:
         factor, vector = expr.args
-        if getattr(vector, "name", "") in self._dual:
+        if self.bases.of(vector) is not None:
             return self._vector_add(n.VectorAdd(expr), frame, hint)
         divisor = _divisor(factor)
         v = self.vector(vector, frame)
@@ -452,20 +252,20 @@ class Lowering:
             bottom = self.scalar(divisor)
             top = self.scalar(factor * divisor)
             return tuple(
-                self.b.divide(self.b.mul(top, c), bottom, f"{hint}_{_XYZ[i]}" if hint else "")
+                self.b.divide(self.b.mul(top, c), bottom, f"{hint}_{XYZ[i]}" if hint else "")
                 for i, c in enumerate(v)
             )
         if all(c == 0 for c in v):
             return v
         s = self.scalar(factor)
-        return tuple(self.b.mul(s, c, f"{hint}_{_XYZ[i]}" if hint else "") for i, c in enumerate(v))
+        return tuple(self.b.mul(s, c, f"{hint}_{XYZ[i]}" if hint else "") for i, c in enumerate(v))
 
     def _vector_apply(self, expr: Any, frame: str, hint: str) -> Triple:
         v = self.vector(expr.args[1], frame)
         t = self.tensor(expr.args[0], frame)
         return tuple(
             self.b.add(
-                [self.b.mul(t[i][k], v[k]) for k in range(3)], f"{hint}_{_XYZ[i]}" if hint else ""
+                [self.b.mul(t[i][k], v[k]) for k in range(3)], f"{hint}_{XYZ[i]}" if hint else ""
             )
             for i in range(3)
         )
@@ -480,7 +280,7 @@ class Lowering:
         return tuple(
             self.b.add(
                 (t[(i + 2) % 3][(i + 1) % 3], -t[(i + 1) % 3][(i + 2) % 3]),
-                f"{hint}_{_XYZ[i]}" if hint else "",
+                f"{hint}_{XYZ[i]}" if hint else "",
             )
             for i in range(3)
         )
@@ -499,7 +299,7 @@ class Lowering:
                     -b.mul(B[j][i], S[i][k]),
                     -b.mul(B[j][k], S[k][k]),
                 ),
-                f"{hint}_{_XYZ[i]}" if hint else "",
+                f"{hint}_{XYZ[i]}" if hint else "",
             )
 
         return (entry(0), entry(1), entry(2))
@@ -512,86 +312,23 @@ class Lowering:
         value, leg_type = expr.args
         v = self.vector(value, frame, f"{hint}_leg" if hint else "")
         return tuple(
-            self.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{_XYZ[i]}")
+            self.b.total(c, leg_type.name, f"{hint or 'total'}_{leg_type.name}_{XYZ[i]}")
             for i, c in enumerate(v)
         )
 
-    # ---- reciprocal bases ----------------------------------------------------------------
-
-    def basis_frame(self, basis: ReciprocalBasis) -> str:
-        """The frame in which the basis vectors have most zeros."""
-        if id(basis) not in self._basis_frame:
-            for vector in basis.vectors:
-                self.ensure(getattr(vector, "name", ""))
-            costs = []
-            for frame in basis.frames:
-                trial = self._attempt(partial(self._all, basis.vectors, frame))
-                nonzero = sum(c not in (0, 1, -1) for column in trial.value for c in column)
-                costs.append((nonzero, trial.cost))
-            self._basis_frame[id(basis)] = basis.frames[costs.index(min(costs))]
-        return self._basis_frame[id(basis)]
-
-    def _basis_rows(self, basis: ReciprocalBasis) -> list[list[Atom]]:
-        frame = self.basis_frame(basis)
-        columns = [self.vector(v, frame) for v in basis.vectors]
-        return [[column[i] for column in columns] for i in range(3)]
-
-    def _resolve(self, basis: ReciprocalBasis, x: Any, amounts: Sequence[Any] = ()) -> list[Atom]:
-        """w_j . x + sum_i m_ji amount_i for all j: sum v_j y_j = x, moment rows on the right."""
-        moments = [self.scalar(a) for a in amounts] or [sp.S.Zero] * len(basis.rows)
-        right = [*self.vector(x, self.basis_frame(basis)), *moments]
-        hints = [self._named_parts.get((getattr(w, "name", ""), x), "") for w in basis.duals]
-        return solve(self.b, self._system(basis), right, hints)
-
-    def _system(self, basis: ReciprocalBasis) -> Screws:
-        """The screws of a basis, their sizes, and the weights of their moment rows."""
-        if id(basis) not in self._screws:
-            screws = Screws(
-                self._basis_matrix(basis),
-                [self.scalar(s) for s in basis.scales],
-                [sp.S.One] * 3 + [self.scalar(basis.length)] * len(basis.rows),
-                self._store,
-            )
-            self._store(self._screws, id(basis), screws)
-        return self._screws[id(basis)]
-
-    def _basis_matrix(self, basis: ReciprocalBasis) -> list[list[Atom]]:
-        """Columns (v_j; moment rows) in the basis's frame."""
-        moments = [[self.scalar(sp.sympify(e)) for e in row] for row in basis.rows]
-        return [*self._basis_rows(basis), *moments]
-
-    def _wrench(self, basis: ReciprocalBasis, weights: Sequence[Any]) -> list[Atom]:
-        """sum g_j (w_j; m_j): the solution of v_j . F + sum_i E_ij mu_i = g_j."""
-        return solve_transposed(self.b, self._system(basis), [self.scalar(g) for g in weights])
-
     def _combination(self, basis: ReciprocalBasis, weights: Sequence[Any], frame: str) -> Triple:
         """Force part of sum g_j (w_j; m_j)."""
-        x, y, z, *_ = self._wrench(basis, weights)
-        return self.rotate((x, y, z), self.basis_frame(basis), frame)
+        x, y, z, *_ = self.bases.wrench(basis, weights)
+        return self.rotation.vector((x, y, z), self.bases.frame(basis), frame)
 
-    def _dual_scalar(self, expr: Any) -> Atom:
-        """Moment part i of reciprocal wrench k."""
-        basis, weights = self._unit_weights(expr)
-        return self._wrench(basis, weights)[3 + int(expr.args[1])]
+    def _single(self, basis: ReciprocalBasis, k: int, frame: str) -> Triple:
+        """Force part of reciprocal wrench k."""
+        x, y, z, *_ = self.bases.single(basis, k)
+        return self.rotation.vector((x, y, z), self.bases.frame(basis), frame)
 
     def _vector_dual(self, expr: Any, frame: str, hint: str) -> Triple:
-        """Force part of reciprocal wrench k."""
-        return self._combination(*self._unit_weights(expr), frame)
-
-    def _unit_weights(self, expr: Any) -> tuple[ReciprocalBasis, list[Any]]:
-        """Basis of a reciprocal wrench, and one for it, zero for the others."""
-        k, (vectors, rows) = int(expr.args[0]), expr.args[-2:]
-        basis = next(
-            b
-            for b in self.d.bases
-            if sp.Tuple(*b.vectors) == vectors and sp.Tuple(*(sp.Tuple(*r) for r in b.rows)) == rows
-        )
-        return basis, [sp.S.One if j == k else sp.S.Zero for j in range(len(basis.vectors))]
-
-    def _dual_vector(self, name: str, frame: str) -> Triple:
-        basis, k = self._dual[name]
-        weights = [sp.S.One if i == k else sp.S.Zero for i in range(len(basis.duals))]
-        return self._combination(basis, weights, frame)
+        k, *screws = expr.args
+        return self._single(self.bases.of_screws(*screws), int(k), frame)
 
     # ---- tensors -------------------------------------------------------------------------
 
@@ -628,7 +365,7 @@ class Lowering:
             value = self._tensors[symbol.name, origin]
         before = self.b.equation
         makers = [
-            lambda: self.rotate_tensor(value, origin, frame, symbol.is_symmetric, symbol.name)
+            lambda: self.rotation.tensor(value, origin, frame, symbol.is_symmetric, symbol.name)
         ]
         if symbol.name in self.definition:
             equation = self.definition[symbol.name]
@@ -636,73 +373,14 @@ class Lowering:
             makers += [
                 partial(self._anew, symbol, f, frame) for f in (equation.rhs, *equation.forms)
             ]
-        found = self.cheapest(makers)
+        found = self.trials.cheapest(makers)
         self.b.equation = before
-        return self._store(self._tensors, key, found)  # type: ignore[no-any-return]
+        return self.trials.store(self._tensors, key, found)
 
     def _anew(self, symbol: Any, form: Any, frame: str) -> Tensor9:
         """A tensor formed from its equation in another frame than its home."""
         value = self.tensor(form, frame, symbol.name)
-        return self._symmetrised(value) if symbol.is_symmetric else value
-
-    def rotate_tensor(
-        self, t: Tensor9, origin: str, target: str, symmetric: bool, hint: str = ""
-    ) -> Tensor9:
-        """Components of a tensor in another frame."""
-        if origin == target:
-            return t
-        makers = [lambda: self._tensor_by_steps(t, origin, target, symmetric)]
-        if target == "base" and origin != "platform" and not symmetric:
-            makers.append(lambda: self._tensor_by_axes(t, origin, hint))
-        if symmetric and target == "base":
-            makers += [
-                partial(self._tensor_by_columns, t, origin, target, k, hint) for k in range(3)
-            ]
-        return self.cheapest(makers)  # type: ignore[no-any-return]
-
-    def _tensor_by_steps(self, t: Tensor9, origin: str, target: str, symmetric: bool) -> Tensor9:
-        for step in self.frames.steps(origin, target):
-            columns = [self.frames.apply(step, (t[0][j], t[1][j], t[2][j])) for j in range(3)]
-            rows = [
-                self.frames.apply(step, (columns[0][i], columns[1][i], columns[2][i]))
-                for i in range(3)
-            ]
-            t = (rows[0], rows[1], rows[2])
-            if symmetric and isinstance(step, ConstantStep):
-                t = self._symmetrised(t)
-        return self._symmetrised(t) if symmetric else t
-
-    def _tensor_by_axes(self, t: Tensor9, origin: str, hint: str) -> Tensor9:
-        """A T A^T with the axes A of the frame of origin in base axes: columns, then rows."""
-        columns = [
-            self._by_columns((t[0][j], t[1][j], t[2][j]), origin, "base", hint) for j in range(3)
-        ]
-        return tuple(
-            self._by_columns((columns[0][i], columns[1][i], columns[2][i]), origin, "base", hint)
-            for i in range(3)
-        )  # type: ignore[return-value]
-
-    def _tensor_by_columns(
-        self, t: Tensor9, origin: str, target: str, left: int, hint: str
-    ) -> Tensor9:
-        """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated."""
-        b, k = self.b, left
-        i, j = (k + 1) % 3, (k + 2) % 3
-        x, y, z = (self.axis_column(origin, target, m) for m in (i, j, k))
-        half = sp.Rational(1, 2)
-        xx = b.mul(half, b.add((t[i][i], -t[k][k])))
-        yy = b.mul(half, b.add((t[j][j], -t[k][k])))
-        a = [b.add((b.mul(xx, x[m]), b.mul(t[i][j], y[m]), b.mul(t[i][k], z[m]))) for m in range(3)]
-        c = [b.add((b.mul(yy, y[m]), b.mul(t[j][k], z[m]))) for m in range(3)]
-        rows = [[sp.S.Zero] * 3 for _ in range(3)]
-        for p in range(3):
-            half_pp = b.add((b.mul(x[p], a[p]), b.mul(y[p], c[p])))
-            rows[p][p] = b.add((t[k][k], b.mul(sp.Integer(2), half_pp)))
-            for q in range(p + 1, 3):
-                rows[p][q] = rows[q][p] = b.add(
-                    (b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p]))
-                )
-        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
+        return symmetrised(self.b, value) if symbol.is_symmetric else value
 
     def _tensor_add(self, expr: Any, frame: str, hint: str) -> Tensor9:
         parts = [self.tensor(term, frame) for term in expr.args]
@@ -770,7 +448,7 @@ class Lowering:
         if isinstance(expr, n.PlaneCross):
             return self._plane_cross(expr, hint)
         if isinstance(expr, n.DualScalar):
-            return self._dual_scalar(expr)
+            return self._moment_part(expr)
         if isinstance(expr, n.LegSum):
             value, leg_type = expr.args
             return self.b.total(
@@ -784,6 +462,11 @@ class Lowering:
             return self._power(expr.base, expr.exp, hint)
         return self.b.let(expr.func(*(self.scalar(a) for a in expr.args)), hint, named=bool(hint))
 
+    def _moment_part(self, expr: Any) -> Atom:
+        """Moment part i of reciprocal wrench k."""
+        k, i, *screws = expr.args
+        return self.bases.single(self.bases.of_screws(*screws), int(k))[3 + int(i)]
+
     def _scalar_symbol(self, symbol: sp.Symbol) -> Atom:
         if symbol.name in self.definition:
             self.ensure(symbol.name)
@@ -794,19 +477,22 @@ class Lowering:
         """A sum; what resolves a twist or a wrench along one basis is solved for at once."""
         plain: list[Any] = []
         twists: dict[tuple[int, int], tuple[ReciprocalBasis, list[Any]]] = {}
-        products: list[tuple[Any, Any, tuple[ReciprocalBasis, int, int]]] = []
+        products: list[tuple[Any, tuple[ReciprocalBasis, int, int]]] = []
         for term in expr.args:
-            dual = self._dual.get(getattr(term.args[0], "name", "")) if term.args else None
-            amount = next((f for f in sp.Mul.make_args(term) if str(f) in self._dual_amount), None)
+            dual = self.bases.of(term.args[0]) if term.args else None
+            amount = next(
+                (f for f in sp.Mul.make_args(term) if getattr(f, "name", "") in self.bases.amounts),
+                None,
+            )
             if isinstance(term, n.Dot) and dual is not None and dual[0].rows:
                 basis, k = dual
                 twists[id(basis), k] = (basis, [term.args[1], *[sp.S.Zero] * len(basis.rows)])
             elif amount is not None:
-                products.append((term, term / amount, self._dual_amount[amount.name]))
+                products.append((term / amount, self.bases.amounts[amount.name]))
             else:
                 plain.append(term)
         wrenches: dict[tuple[int, int], tuple[ReciprocalBasis, list[Any]]] = {}
-        for _, factor, (basis, k, i) in products:
+        for factor, (basis, k, i) in products:
             if (id(basis), k) in twists:
                 twists[id(basis), k][1][1 + i] += factor
             else:
@@ -814,9 +500,9 @@ class Lowering:
                 wrenches.setdefault((id(basis), i), (basis, zeros))[1][k] += factor
         parts = [self.scalar(term) for term in plain]
         for (_, k), (basis, (x, *amounts)) in twists.items():
-            parts.append(self._resolve(basis, x, amounts)[k])
+            parts.append(self.bases.resolve(basis, x, amounts)[k])
         for (_, i), (basis, weights) in wrenches.items():
-            parts.append(self._wrench(basis, weights)[3 + i])
+            parts.append(self.bases.wrench(basis, weights)[3 + i])
         return self.b.add(parts, hint, named=bool(hint))
 
     def _product(self, expr: Any, hint: str) -> Atom:
@@ -848,12 +534,12 @@ class Lowering:
     def _dot(self, expr: Any, hint: str) -> Atom:
         a, c = expr.args
         for dual, other in ((a, c), (c, a)):
-            found = self._dual.get(getattr(dual, "name", ""))
+            found = self.bases.of(dual)
             if found is not None:
                 basis, k = found
-                return self._resolve(basis, other)[k]
+                return self.bases.resolve(basis, other)[k]
         frames = self._frames_of(expr)
-        return self.cheapest([partial(self._dot_in, a, c, f, hint) for f in frames])
+        return self.trials.cheapest([partial(self._dot_in, a, c, f, hint) for f in frames])
 
     def _dot_in(self, a: Any, c: Any, frame: str, hint: str) -> Atom:
         u, v = self.vector(a, frame), self.vector(c, frame)
@@ -887,7 +573,7 @@ _TENSOR_OPERATIONS: dict[type, Any] = {
 
 
 def _entry(hint: str, i: int, j: int) -> str:
-    return f"{hint}_{_XYZ[i]}{_XYZ[j]}" if hint else ""
+    return f"{hint}_{XYZ[i]}{XYZ[j]}" if hint else ""
 
 
 def _divisor(expr: Any) -> Any | None:
@@ -905,10 +591,3 @@ def _symbols(expr: Any) -> list[Any]:
     for arg in getattr(expr, "args", ()):
         found.extend(symbol for symbol in _symbols(arg) if symbol not in found)
     return found
-
-
-def _atoms(value: Any) -> list[Atom]:
-    """All atoms of nested tuples."""
-    if isinstance(value, tuple | list):
-        return [atom for part in value for atom in _atoms(part)]
-    return [value]

@@ -23,7 +23,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.derivation import Book, Condition, Law, Quantity, ReciprocalBasis, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.scope import axes_at, moment_directions, velocity_vectors
 from pne_sym.model.closure import TWIST, Pose, displaced, least_norm, leg_gap, pose_at
@@ -258,22 +258,19 @@ def completed_wrenches(
     vectors = [*(vector for vector, _ in columns), *freedoms.vectors]
     rows = [[*(entries[i] for _, entries in columns), *row] for i, row in enumerate(freedoms.rows)]
     screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
-    found, duals, amounts = [], [], []
-    for k, auxiliary in enumerate(chosen):
-        force, moments = _dual(book, g, k, screws, len(rows), freedoms.frame)
-        duals.append(force)
-        amounts.append(moments)
-        found.append(_unit_wrench(book, g, freedoms, k + 1, force, moments, auxiliary))
+    writer = _WrenchWriter(book, g, freedoms.directions, freedoms.frame)
+    parts = [writer.reciprocal(k, a, screws, len(rows)) for k, a in enumerate(chosen)]
+    found = [writer.of_unit_size(k, a, *parts[k]) for k, a in enumerate(chosen)]
     frames = dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1))
     book.bases.append(
         ReciprocalBasis(
             g.leg_type.name,
             tuple(vectors),
-            tuple(duals),
+            tuple(force for force, _ in parts),
             (*(sp.S.One for _ in chosen), *freedoms.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
-            tuple(amounts),
+            tuple(amounts for _, amounts in parts),
             g.size,
         )
     )
@@ -313,87 +310,106 @@ def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol
     return symbol
 
 
-def _dual(
-    book: Book, g: LegGeometry, k: int, screws: tuple[Any, Any], transmitted: int, frame: str
-) -> tuple[Any, tuple[Any, ...]]:
-    """The reciprocal wrench of auxiliary direction k: force, moment amounts."""
-    force = book.define(
-        g.name(f"f_c{k + 1}"),
-        DualVector(sp.Integer(k), *screws),
-        rf"\mathbf f_{{c{k + 1}}}",
-        f"force part of the wrench that does no work along the leg's freedoms, {k + 1}",
-        Law.RECIPROCITY,
-        body=frame,
-        reference="Eq. 35",
-    )
-    amounts = tuple(
-        book.define(
-            g.name(f"m{i + 1}_c{k + 1}"),
-            DualScalar(sp.Integer(k), sp.Integer(i), *screws),
-            f"m_{{c{k + 1}{i + 1}}}",
-            f"moment part {i + 1} of the wrench that does no work along the leg's freedoms, "
-            f"{k + 1}",
+@dataclass(frozen=True)
+class _WrenchWriter:
+    """Defines the wrenches reciprocal to auxiliary directions."""
+
+    book: Book
+    g: LegGeometry
+    directions: list[Any]
+    frame: str
+
+    def reciprocal(
+        self, k: int, auxiliary: Auxiliary, screws: tuple[Any, Any], transmitted: int
+    ) -> tuple[Any, tuple[Any, ...]]:
+        """The reciprocal wrench of auxiliary direction k: force, moment amounts."""
+        slide = auxiliary.kind is Kind.SLIDE
+        what = f"of the wrench that does no work along the leg's freedoms, {k + 1}"
+        force = self.book.define(
+            self.g.name(f"f_c{k + 1}"),
+            DualVector(sp.Integer(k), *screws),
+            rf"\mathbf f_{{c{k + 1}}}",
+            f"force part {what}",
             Law.RECIPROCITY,
+            unit="-" if slide else "1/m",
+            body=self.frame,
             reference="Eq. 35",
         )
-        for i in range(transmitted)
-    )
-    return force, amounts
+        amounts = tuple(
+            self.book.define(
+                self.g.name(f"m{i + 1}_c{k + 1}"),
+                DualScalar(sp.Integer(k), sp.Integer(i), *screws),
+                f"m_{{c{k + 1}{i + 1}}}",
+                f"moment part {i + 1} {what}",
+                Law.RECIPROCITY,
+                unit="m" if slide else "-",
+                reference="Eq. 35",
+            )
+            for i in range(transmitted)
+        )
+        return force, amounts
 
-
-def _unit_wrench(
-    book: Book,
-    g: LegGeometry,
-    freedoms: Freedoms,
-    number: int,
-    force: Any,
-    amounts: tuple[Any, ...],
-    auxiliary: Auxiliary,
-) -> LeftOut:
-    """The wrench for a force, or a moment, of size one."""
-    directions, frame, of_force = freedoms.directions, freedoms.frame, auxiliary.of_force
-    size = book.define(
-        g.name(f"size_c{number}"),
-        norm(force) if of_force else _size(amounts),
-        rf"\ell_{{c{number}}}",
-        f"size of the {'force' if of_force else 'moment'}",
-        Law.GEOMETRY,
-    )
-    unit = book.define(
-        g.name(f"n_c{number}"),
-        force / size,
-        rf"\mathbf n_{{c{number}}}",
-        "unit force that the leg's freedoms leave out"
-        if of_force
-        else "force part, zero where the loops close, of the unit moment that the leg's freedoms "
-        "leave out",
-        Law.GEOMETRY,
-        body=frame,
-        reference="Eq. 35",
-    )
-    moments = tuple(
-        book.define(
-            g.name(f"mu{i}_c{number}"),
-            amount / size,
-            rf"\mu_{{c{number}{i}}}",
-            f"moment along direction {i} that goes with it",
+    def of_unit_size(
+        self, k: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]
+    ) -> LeftOut:
+        """The same wrench for a force, or a moment, of size one."""
+        number, of_force = k + 1, auxiliary.of_force
+        size = self._size(number, auxiliary, force, amounts)
+        unit = self.book.define(
+            self.g.name(f"n_c{number}"),
+            force / size,
+            rf"\mathbf n_{{c{number}}}",
+            "unit force that the leg's freedoms leave out"
+            if of_force
+            else "force part, zero where the loops close, of the unit moment that the leg's "
+            "freedoms leave out",
             Law.GEOMETRY,
+            unit="-" if of_force else "1/m",
+            body=self.frame,
             reference="Eq. 35",
         )
-        for i, amount in enumerate(amounts, 1)
-    )
-    if not moments:
-        return LeftOut(unit, acts=auxiliary.acts)
-    moment = book.define(
-        g.name(f"mu_c{number}"),
-        _moment(moments, directions),
-        rf"\boldsymbol\mu_{{c{number}}}",
-        "the moment that goes with it",
-        Law.GEOMETRY,
-        body=frame,
-        reference="Eq. 35",
-    )
-    return LeftOut(unit, moments, moment, auxiliary.acts)
+        moments = tuple(
+            self.book.define(
+                self.g.name(f"mu{i}_c{number}"),
+                amount / size,
+                rf"\mu_{{c{number}{i}}}",
+                f"moment along direction {i} that goes with it",
+                Law.GEOMETRY,
+                unit="m" if of_force else "-",
+                reference="Eq. 35",
+            )
+            for i, amount in enumerate(amounts, 1)
+        )
+        if not moments:
+            return LeftOut(unit, acts=auxiliary.acts)
+        moment = self.book.define(
+            self.g.name(f"mu_c{number}"),
+            _moment(moments, self.directions),
+            rf"\boldsymbol\mu_{{c{number}}}",
+            "the moment that goes with it",
+            Law.GEOMETRY,
+            unit="m" if of_force else "-",
+            body=self.frame,
+            reference="Eq. 35",
+        )
+        return LeftOut(unit, moments, moment, auxiliary.acts)
+
+    def _size(self, number: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]) -> Any:
+        """Size of the force, or of the moment: singular where it vanishes."""
+        if auxiliary.of_force:
+            size, what, slides_unit, turns_unit = norm(force), "force", 0, -1
+        else:
+            size, what, slides_unit, turns_unit = _size(amounts), "moment", 1, 0
+        power_of_length = slides_unit if auxiliary.kind is Kind.SLIDE else turns_unit
+        return self.book.define(
+            self.g.name(f"size_c{number}"),
+            size,
+            rf"\ell_{{c{number}}}",
+            f"size of the {what}",
+            Law.GEOMETRY,
+            unit={-1: "1/m", 0: "-", 1: "m"}[power_of_length],
+            conditions=(Condition(Trouble.SINGULAR, size, self.g.size**power_of_length),),
+        )
 
 
 def _size(amounts: tuple[Any, ...]) -> Any:

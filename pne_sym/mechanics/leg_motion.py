@@ -190,6 +190,10 @@ class LinearWriter:
         return symbol
 
 
+# Units of what is reciprocal to the freedom of a joint, by whether the joint turns.
+_FORCE_PART = {True: "1/m", False: "-"}
+_MOMENT_PART = {True: "-", False: "m"}
+
 _RATES = (
     r"Each joint j moves the connection point along its velocity vector $`\mathbf v_j`$: "
     r"$`\dot{\mathbf S}=\sum_j\mathbf v_j\,\dot q_j`$. The reciprocal vectors $`\mathbf w_j`$, "
@@ -385,10 +389,11 @@ class MotionWriter:
             *(rf"\mathbf w_{{{j}}}" for j in joints),
             *(rf"\mathbf w_{{c{k + 1}}}" for k in range(missing)),
         ]
+        turns = [*map(g.turns, joints), *(False for _ in wrenches)]
         duals, moment_duals = (
-            self._define_wrenches(vectors, rows, names, latexes)
+            self._define_wrenches(vectors, rows, names, latexes, turns)
             if rows
-            else (self._define_duals(vectors, names, latexes), [])
+            else (self._define_duals(vectors, names, latexes, turns), [])
         )
         motion.w = dict(zip(joints, duals, strict=False))
         for j, amounts in zip(joints, moment_duals, strict=False):
@@ -400,6 +405,7 @@ class MotionWriter:
                 rf"\mathbf o_{{{j}}}",
                 f"moment part of reciprocal wrench {j}",
                 Law.RECIPROCITY,
+                unit=_MOMENT_PART[g.turns(j)],
                 body=self.tip_frame(),
                 reference="Sec. 2.2, joint table",
             )
@@ -433,7 +439,12 @@ class MotionWriter:
             )
 
     def _define_wrenches(
-        self, vectors: list[Any], rows: list[list[Any]], names: list[str], latexes: list[str]
+        self,
+        vectors: list[Any],
+        rows: list[list[Any]],
+        names: list[str],
+        latexes: list[str],
+        turns: list[bool],
     ) -> tuple[list[Any], list[list[Any]]]:
         """Reciprocal wrenches where the leg transmits moments."""
         book, g = self.book, self.g
@@ -447,6 +458,7 @@ class MotionWriter:
                     latexes[k],
                     f"force part of reciprocal wrench {k + 1}",
                     Law.RECIPROCITY,
+                    unit=_FORCE_PART[turns[k]],
                     body=self.tip_frame(),
                     reference="Sec. 2.2, joint table",
                 )
@@ -459,6 +471,7 @@ class MotionWriter:
                         f"m_{{{k + 1}{i + 1}}}",
                         f"moment part {i + 1} of reciprocal wrench {k + 1}",
                         Law.RECIPROCITY,
+                        unit=_MOMENT_PART[turns[k]],
                         reference="Sec. 2.2, joint table",
                     )
                     for i in range(len(rows))
@@ -466,7 +479,9 @@ class MotionWriter:
             )
         return duals, moments
 
-    def _define_duals(self, vectors: list[Any], names: list[str], latexes: list[str]) -> list[Any]:
+    def _define_duals(
+        self, vectors: list[Any], names: list[str], latexes: list[str], turns: list[bool]
+    ) -> list[Any]:
         book, g = self.book, self.g
         duals = []
         planar = len(vectors) == 2
@@ -484,6 +499,7 @@ class MotionWriter:
                     latexes[k],
                     f"reciprocal vector {k + 1}",
                     Law.RECIPROCITY,
+                    unit=_FORCE_PART[turns[k]],
                     body=self.tip_frame(),
                     reference="Sec. 2.3",
                 )

@@ -1,0 +1,113 @@
+"""Reciprocal bases: what resolves a twist or a wrench along a leg's freedoms."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import Any
+
+import sympy as sp
+
+from pne_sym.derivation import Derivation, ReciprocalBasis
+from pne_sym.lowering.builder import Atom, Builder
+from pne_sym.lowering.frames import Triple
+from pne_sym.lowering.solve import Screws, solve, solve_transposed
+from pne_sym.lowering.trials import Trials
+from pne_sym.vector import nodes as n
+
+
+class Bases:
+    """The reciprocal bases of a derivation, lowered where they are needed.
+
+    Attributes:
+        duals: name of a reciprocal vector -> (basis, its number).
+        amounts: name of a moment part -> (basis, number of the wrench, moment direction).
+    """
+
+    def __init__(
+        self,
+        derivation: Derivation,
+        builder: Builder,
+        trials: Trials,
+        vector: Callable[[Any, str], Triple],
+        scalar: Callable[[Any], Atom],
+        ensure: Callable[[str], None],
+    ) -> None:
+        self.b, self.trials = builder, trials
+        self.vector, self.scalar, self.ensure = vector, scalar, ensure
+        self.all = derivation.bases
+        complete = [b for b in derivation.bases if len(b.duals) == len(b.vectors)]
+        self.duals = {w.name: (basis, k) for basis in complete for k, w in enumerate(basis.duals)}
+        self.amounts = {
+            amount.name: (basis, k, i)
+            for basis in complete
+            for k, amounts in enumerate(basis.moment_duals)
+            for i, amount in enumerate(amounts)
+        }
+        self._named_parts = {
+            (e.rhs.args[0].name, e.rhs.args[1]): e.name
+            for e in derivation.equations()
+            if isinstance(e.rhs, n.Dot) and self.of(e.rhs.args[0]) is not None
+        }
+        self._frame: dict[int, str] = {}
+        self._screws: dict[int, Screws] = {}
+
+    def of(self, vector: Any) -> tuple[ReciprocalBasis, int] | None:
+        """Basis and number of a vector, if it is a reciprocal one."""
+        return self.duals.get(getattr(vector, "name", ""))
+
+    def frame(self, basis: ReciprocalBasis) -> str:
+        """The frame in which the basis vectors have most zeros."""
+        if id(basis) not in self._frame:
+            for vector in basis.vectors:
+                self.ensure(getattr(vector, "name", ""))
+            costs = []
+            for frame in basis.frames:
+                trial = self.trials.attempt(partial(self._columns, basis, frame))
+                nonzero = sum(c not in (0, 1, -1) for column in trial.value for c in column)
+                costs.append((nonzero, trial.cost))
+            self._frame[id(basis)] = basis.frames[costs.index(min(costs))]
+        return self._frame[id(basis)]
+
+    def resolve(self, basis: ReciprocalBasis, x: Any, amounts: Sequence[Any] = ()) -> list[Atom]:
+        """w_j . x + sum_i m_ji amount_i for all j: sum v_j y_j = x, moment rows on the right."""
+        moments = [self.scalar(a) for a in amounts] or [sp.S.Zero] * len(basis.rows)
+        right = [*self.vector(x, self.frame(basis)), *moments]
+        hints = [self._named_parts.get((getattr(w, "name", ""), x), "") for w in basis.duals]
+        return solve(self.b, self._system(basis), right, hints)
+
+    def wrench(self, basis: ReciprocalBasis, weights: Sequence[Any]) -> list[Atom]:
+        """sum g_j (w_j; m_j): the solution of v_j . F + sum_i E_ij mu_i = g_j.
+
+        Three components of the force, in the basis's frame, then the moment amounts.
+        """
+        return solve_transposed(self.b, self._system(basis), [self.scalar(g) for g in weights])
+
+    def single(self, basis: ReciprocalBasis, k: int) -> list[Atom]:
+        """Wrench k alone, as `wrench` does."""
+        return self.wrench(basis, [sp.Integer(int(j == k)) for j in range(len(basis.vectors))])
+
+    def of_screws(self, vectors: Any, rows: Any) -> ReciprocalBasis:
+        """The basis of given screws."""
+        return next(
+            b
+            for b in self.all
+            if sp.Tuple(*b.vectors) == vectors and sp.Tuple(*(sp.Tuple(*r) for r in b.rows)) == rows
+        )
+
+    def _columns(self, basis: ReciprocalBasis, frame: str) -> list[Triple]:
+        return [self.vector(v, frame) for v in basis.vectors]
+
+    def _system(self, basis: ReciprocalBasis) -> Screws:
+        """The screws of a basis, their sizes, and the weights of their moment rows."""
+        if id(basis) not in self._screws:
+            columns = self._columns(basis, self.frame(basis))
+            moments = [[self.scalar(sp.sympify(e)) for e in row] for row in basis.rows]
+            screws = Screws(
+                [*([column[i] for column in columns] for i in range(3)), *moments],
+                [self.scalar(s) for s in basis.scales],
+                [sp.S.One] * 3 + [self.scalar(basis.length)] * len(basis.rows),
+                self.trials.store,
+            )
+            self.trials.store(self._screws, id(basis), screws)
+        return self._screws[id(basis)]

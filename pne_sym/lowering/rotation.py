@@ -1,0 +1,213 @@
+"""Components from frame to frame: joint by joint, or by the axes of a frame in base axes.
+
+Which is cheaper depends on what is there already and on how many vectors pass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import partial
+
+import sympy as sp
+
+from pne_sym.derivation import Equation
+from pne_sym.lowering.builder import Builder
+from pne_sym.lowering.frames import ConstantStep, Frames, Triple
+from pne_sym.lowering.trials import Trials
+from pne_sym.vector import nodes as n
+
+Tensor9 = tuple[Triple, Triple, Triple]
+XYZ = "xyz"
+
+
+class Rotation:
+    """Turns components of vectors and tensors into those in another frame.
+
+    Attributes:
+        vectors: components by (name, frame), as far as they are known.
+        definition: equation of each named quantity.
+    """
+
+    def __init__(
+        self,
+        builder: Builder,
+        frames: Frames,
+        trials: Trials,
+        vectors: Mapping[tuple[str, str], Triple],
+        definition: Mapping[str, Equation],
+    ) -> None:
+        self.b, self.frames, self.trials = builder, frames, trials
+        self.vectors, self.definition = vectors, definition
+        self._axis_columns: dict[tuple[str, str, int], Triple] = {}
+
+    def vector(self, v: Triple, origin: str, target: str, hint: str = "") -> Triple:
+        """Components of a vector in another frame: step by step, or by axis columns."""
+        if origin == target or all(c == 0 for c in v):
+            return v
+        makers = [lambda: self._by_steps(v, origin, target, hint)]
+        if origin == "base" and self._has_columns(target):
+            makers.append(lambda: self._by_rows(v, target, hint))
+        if target == "base" and origin != "platform":
+            makers.append(lambda: self._by_columns(v, origin, target, hint))
+        return self.trials.cheapest(makers)
+
+    def _has_columns(self, frame: str) -> bool:
+        return all((frame, "base", k) in self._axis_columns for k in range(3))
+
+    def _by_rows(self, v: Triple, frame: str, hint: str) -> Triple:
+        axes = [self.axis_column(frame, "base", k) for k in range(3)]
+        return tuple(
+            self.b.add([self.b.mul(axis[i], v[i]) for i in range(3)], f"{hint}_tip_{XYZ[k]}")
+            for k, axis in enumerate(axes)
+        )
+
+    def _by_steps(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
+        steps = self.frames.steps(origin, target)
+        for k, step in enumerate(steps):
+            last = k == len(steps) - 1
+            v = self.frames.apply(
+                step, v, f"{hint}_in_base" if last and target == "base" else f"{hint}_r{k}"
+            )
+        return v
+
+    def _by_columns(self, v: Triple, origin: str, target: str, hint: str) -> Triple:
+        columns = [self.axis_column(origin, target, k) if v[k] != 0 else None for k in range(3)]
+        return tuple(
+            self.b.add(
+                [
+                    self.b.mul(v[k], column[i])
+                    for k, column in enumerate(columns)
+                    if column is not None
+                ],
+                f"{hint}_in_base_{XYZ[i]}",
+            )
+            for i in range(3)
+        )
+
+    def axis_column(self, origin: str, target: str, k: int) -> Triple:
+        """Axis k of a frame in another: along a known vector, by cross product, or turned."""
+        key = (origin, target, k)
+        if key in self._axis_columns:
+            return self._axis_columns[key]
+        unit = [sp.S.Zero] * 3
+        unit[k] = sp.S.One
+        hint = f"axis_{XYZ[k]}_{origin.replace('.', '_')}"
+        makers: list[Callable[[], Triple]] = [
+            lambda: self._by_steps((unit[0], unit[1], unit[2]), origin, target, hint)
+        ]
+        along = self.along(origin, target, k)
+        if along is not None:
+            makers.append(along)
+        others = [(origin, target, (k + 1) % 3), (origin, target, (k + 2) % 3)]
+        if all(other in self._axis_columns for other in others):
+            a, c = (self._axis_columns[other] for other in others)
+            makers.append(lambda: cross(self.b, a, c, hint))
+        return self.trials.store(self._axis_columns, key, self.trials.cheapest(makers))
+
+    def along(self, origin: str, target: str, k: int) -> Callable[[], Triple] | None:
+        """A way by a vector whose only component in the origin frame is its k-th."""
+        for (name, frame), v in self.vectors.items():
+            if (
+                frame != origin
+                or v[k] == 0
+                or v[k].is_Number
+                or any(v[i] != 0 for i in range(3) if i != k)
+            ):
+                continue
+            same = self._same_vector(name, target)
+            if same is not None:
+                length = v[k]
+                return lambda: tuple(
+                    self.b.divide(c, length, f"axis_{XYZ[k]}_{XYZ[i]}") for i, c in enumerate(same)
+                )
+        return None
+
+    def _same_vector(self, name: str, target: str) -> Triple | None:
+        """Components in the target of a vector or of an equal one."""
+        if (name, target) in self.vectors:
+            return self.vectors[name, target]
+        if name in self.definition:
+            for form in self.definition[name].forms:
+                if isinstance(form, n.VectorSymbol) and (form.name, target) in self.vectors:
+                    return self.vectors[form.name, target]
+        return None
+
+    def tensor(
+        self, t: Tensor9, origin: str, target: str, symmetric: bool, hint: str = ""
+    ) -> Tensor9:
+        """Components of a tensor in another frame."""
+        if origin == target:
+            return t
+        makers = [lambda: self._tensor_by_steps(t, origin, target, symmetric)]
+        if target == "base" and origin != "platform" and not symmetric:
+            makers.append(lambda: self._tensor_by_axes(t, origin, hint))
+        if symmetric and target == "base":
+            makers += [
+                partial(self._tensor_by_columns, t, origin, target, k, hint) for k in range(3)
+            ]
+        return self.trials.cheapest(makers)
+
+    def _tensor_by_steps(self, t: Tensor9, origin: str, target: str, symmetric: bool) -> Tensor9:
+        for step in self.frames.steps(origin, target):
+            columns = [self.frames.apply(step, (t[0][j], t[1][j], t[2][j])) for j in range(3)]
+            rows = [
+                self.frames.apply(step, (columns[0][i], columns[1][i], columns[2][i]))
+                for i in range(3)
+            ]
+            t = (rows[0], rows[1], rows[2])
+            if symmetric and isinstance(step, ConstantStep):
+                t = symmetrised(self.b, t)
+        return symmetrised(self.b, t) if symmetric else t
+
+    def _tensor_by_axes(self, t: Tensor9, origin: str, hint: str) -> Tensor9:
+        """A T A^T with the axes A of the frame of origin in base axes: columns, then rows."""
+        columns = [
+            self._by_columns((t[0][j], t[1][j], t[2][j]), origin, "base", hint) for j in range(3)
+        ]
+        return tuple(
+            self._by_columns((columns[0][i], columns[1][i], columns[2][i]), origin, "base", hint)
+            for i in range(3)
+        )  # type: ignore[return-value]
+
+    def _tensor_by_columns(
+        self, t: Tensor9, origin: str, target: str, left: int, hint: str
+    ) -> Tensor9:
+        """T_kk E + sym(x a^T) + sym(y b^T) with two axes x, y: axis k is eliminated."""
+        b, k = self.b, left
+        i, j = (k + 1) % 3, (k + 2) % 3
+        x, y, z = (self.axis_column(origin, target, m) for m in (i, j, k))
+        half = sp.Rational(1, 2)
+        xx = b.mul(half, b.add((t[i][i], -t[k][k])))
+        yy = b.mul(half, b.add((t[j][j], -t[k][k])))
+        a = [b.add((b.mul(xx, x[m]), b.mul(t[i][j], y[m]), b.mul(t[i][k], z[m]))) for m in range(3)]
+        c = [b.add((b.mul(yy, y[m]), b.mul(t[j][k], z[m]))) for m in range(3)]
+        rows = [[sp.S.Zero] * 3 for _ in range(3)]
+        for p in range(3):
+            half_pp = b.add((b.mul(x[p], a[p]), b.mul(y[p], c[p])))
+            rows[p][p] = b.add((t[k][k], b.mul(sp.Integer(2), half_pp)))
+            for q in range(p + 1, 3):
+                rows[p][q] = rows[q][p] = b.add(
+                    (b.mul(x[p], a[q]), b.mul(x[q], a[p]), b.mul(y[p], c[q]), b.mul(y[q], c[p]))
+                )
+        return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
+
+
+def symmetrised(b: Builder, t: Tensor9) -> Tensor9:
+    """Of each pair of equal entries the cheaper one."""
+    rows = [list(row) for row in t]
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        upper, lower = t[i][j], t[j][i]
+        best = lower if b.cost([lower]) < b.cost([upper]) else upper
+        rows[i][j] = rows[j][i] = best
+    return (tuple(rows[0]), tuple(rows[1]), tuple(rows[2]))
+
+
+def cross(b: Builder, v: Triple, w: Triple, hint: str = "") -> Triple:
+    """Components of v x w."""
+    return tuple(
+        b.add(
+            (b.mul(v[(i + 1) % 3], w[(i + 2) % 3]), -b.mul(v[(i + 2) % 3], w[(i + 1) % 3])),
+            f"{hint}_{XYZ[i]}" if hint else "",
+        )
+        for i in range(3)
+    )

@@ -1,0 +1,96 @@
+"""Ways to make a value, tried and forgotten, so that the cheapest can be taken."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from pne_sym.lowering.builder import Atom, Builder, Undone
+
+_T = TypeVar("_T")
+_MAX_DEPTH = 2
+
+
+class NotYetError(Exception):
+    """A value is asked for while it is being made: this way around does not lead there."""
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A value made on trial.
+
+    Attributes:
+        cost: run-time operations beyond what is live; infinite if it needs what is not known yet.
+        value: its components.
+        stored: entries of tables that were made with it.
+        forgotten: statements that were.
+    """
+
+    cost: float
+    value: Any
+    stored: list[tuple[dict[Any, Any], Any, Any]]
+    forgotten: Undone
+
+
+class Trials:
+    """Keeps what is made, and forgets what was only tried."""
+
+    def __init__(self, builder: Builder) -> None:
+        self._b = builder
+        self._undo: list[tuple[dict[Any, Any], Any]] = []
+        self._depth = 0
+
+    def store(self, table: dict[Any, Any], key: Any, value: _T) -> _T:
+        """Keep a value in a table; it goes when the trial in which it is made is forgotten."""
+        table[key] = value
+        self._undo.append((table, key))
+        return value
+
+    def attempt(self, make: Callable[[], Any]) -> Trial:
+        """Make a value and forget it."""
+        mark, undo, equation = self._b.mark(), len(self._undo), self._b.equation
+        depth, self._depth = self._depth, self._depth + 1
+        value: Any = None
+        cost = float("inf")
+        try:
+            value = make()
+            cost = self._b.cost(atoms(value))
+        except NotYetError:
+            pass
+        self._depth = depth
+        stored = [(table, key, table.get(key)) for table, key in self._undo[undo:]]
+        for table, key, _ in stored:
+            table.pop(key, None)
+        del self._undo[undo:]
+        forgotten = self._b.rollback(mark)
+        self._b.equation = equation
+        return Trial(cost, value, stored, forgotten)
+
+    def cheapest(self, makers: Sequence[Callable[[], _T]]) -> _T:
+        """The value of the cheapest way; ties go to the first."""
+        if len(makers) == 1:
+            return makers[0]()
+        if self._depth < _MAX_DEPTH:
+            costs = [self.attempt(make).cost for make in makers]
+            # Made anew: its own choices are then tried as deep as this one.
+            return makers[costs.index(min(costs))]()
+        for make in makers:
+            trial = self.attempt(make)
+            if trial.cost < float("inf"):
+                return self._adopt(trial)  # type: ignore[no-any-return]
+        return makers[0]()
+
+    def _adopt(self, trial: Trial) -> Any:
+        """The value of a trial, made for good: nothing may have been made since."""
+        self._b.redo(trial.forgotten)
+        for table, key, value in trial.stored:
+            self.store(table, key, value)
+        return trial.value
+
+
+def atoms(value: Any) -> list[Atom]:
+    """All atoms of nested tuples."""
+    if isinstance(value, tuple | list):
+        return [atom for part in value for atom in atoms(part)]
+    return [value]
