@@ -22,7 +22,12 @@ Names are looked up when they are used, so that importing the package is quick.
 
 from __future__ import annotations
 
+import os
 from typing import TYPE_CHECKING, Any
+
+# How many results SymPy keeps per function, which it reads when it is imported.  Its own thousand
+# are fewer than one derivation makes: with these a dense one takes half the time.
+os.environ.setdefault("SYMPY_CACHE_SIZE", "200000")
 
 if TYPE_CHECKING:
     from pne_sym.drawing import draw
