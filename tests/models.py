@@ -1,7 +1,7 @@
 """Models compiled in memory, once per test run, and the live parameters of other specifications.
 
-Texts of generated modules are kept between runs, and shared by the workers of one, under all that
-they depend on: the engine's sources and templates, versions of libraries, the specification.
+What is compiled is kept between runs, and shared by the workers of one, under all that it depends
+on: the engine's sources and templates, versions of libraries, the specification.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
+import pickle
 import re
 import shutil
 from functools import cache
@@ -58,32 +59,41 @@ def catalogue(name: str) -> Manipulator:
 @cache
 def bundle(manipulator: Manipulator) -> Bundle:
     """The compiled manipulator: derivation and program."""
-    return compile_bundle(manipulator)
+    kept = _place(manipulator, "pickle")
+    if not kept.exists():
+        _keep(kept, pickle.dumps(compile_bundle(manipulator)))
+    found: Bundle = pickle.loads(kept.read_bytes())
+    return found
 
 
 @cache
 def texts(manipulator: Manipulator) -> tuple[str, str]:
     """The NumPy module and the manifest."""
-    kept = _KEPT / f"{hashlib.sha256(repr(manipulator).encode()).hexdigest()[:32]}.json"
+    kept = _place(manipulator, "json")
     if not kept.exists():
-        _keep(kept, manipulator)
-    module_text, manifest_text = json.loads(kept.read_text(encoding="utf-8"))
+        compiled = bundle(manipulator)
+        made = (
+            NumpyBackend().emit(compiled)[f"{compiled.name}.py"],
+            ManifestBackend().emit(compiled)[f"{compiled.name}.json"],
+        )
+        _keep(kept, json.dumps(made).encode())
+    module_text, manifest_text = json.loads(kept.read_bytes())
     return module_text, manifest_text
 
 
-def _keep(kept: Path, manipulator: Manipulator) -> None:
-    """Generate and store, complete at every moment for other workers to read."""
-    compiled = bundle(manipulator)
-    made = (
-        NumpyBackend().emit(compiled)[f"{compiled.name}.py"],
-        ManifestBackend().emit(compiled)[f"{compiled.name}.json"],
-    )
+def _place(manipulator: Manipulator, suffix: str) -> Path:
+    """The file for what is made of a manipulator."""
+    return _KEPT / f"{hashlib.sha256(repr(manipulator).encode()).hexdigest()[:32]}.{suffix}"
+
+
+def _keep(kept: Path, made: bytes) -> None:
+    """Store, complete at every moment for other workers to read."""
     _KEPT.mkdir(parents=True, exist_ok=True)
     for other in _KEPT.parent.iterdir():
         if other != _KEPT:  # of an engine that is no more
             shutil.rmtree(other, ignore_errors=True)
     draft = kept.with_suffix(f".{os.getpid()}")
-    draft.write_text(json.dumps(made), encoding="utf-8")
+    draft.write_bytes(made)
     draft.replace(kept)
 
 

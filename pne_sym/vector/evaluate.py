@@ -33,11 +33,11 @@ def evaluate(expr: Any, values: Mapping[str, Any]) -> Any:
     """
     if isinstance(expr, n.VectorSymbol | n.TensorSymbol | sp.Symbol):
         return values[expr.name]
-    if expr is n.ZeroVector:
+    if expr == n.ZeroVector:
         return np.zeros(3)
-    if expr is n.ZeroTensor:
+    if expr == n.ZeroTensor:
         return np.zeros((3, 3))
-    if expr is n.Identity:
+    if expr == n.Identity:
         return np.eye(3)
     if isinstance(expr, sp.Number):
         return float(expr)

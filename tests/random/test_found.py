@@ -41,6 +41,8 @@ from tests.random.judging import judge
 
 FOUND: dict[str, tuple[str, list[str]]] = {
     "the size of a vector with one component": ("spatial", ["Ry*0 Rz | S"] * 3),
+    "one slide": ("spatial", ["Px* | S", *["Rz* Ry Px* | S"] * 3]),
+    "one helix": ("spatial", ["Hz* | S", *["Rz* Ry Px* | S"] * 3]),
     "no axis across a helix": ("spatial", ["Hz* Px | S", "Rz* Ry Px* | S", "Rz* Ry Px* | S"]),
     "extra joint of a constrained leg": ("point", ["Px*+ Py* | R"]),
     "passive extra joint of a constrained leg": ("planar", ["Rz+ Rz* | R", "Rz* Px | R"]),
@@ -48,7 +50,9 @@ FOUND: dict[str, tuple[str, list[str]]] = {
     "angle that parameters fix": ("translational", ["Pz* Rx | U"]),
     "moment on a platform that cannot turn": ("translational", ["Px* Py* | U"]),
     "two freedoms and a universal joint": ("spatial", ["Px0 Rx* | U"] * 2),
+    "three freedoms and a revolute joint": ("spatial", ["Rz* Ry* Rx | R", "Rz* Ry Px* | S"]),
     "three freedoms and a rigid joint": ("spatial", ["Rz* Rx* Pt* | rigid"]),
+    "five freedoms and a rigid joint": ("spatial", ["Rz* Ry* Px* Rx Rz* | rigid", "Rz Ry Px* | S"]),
 }
 
 
