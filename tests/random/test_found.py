@@ -27,8 +27,12 @@ from pne_sym.model.manipulator import (
     Space,
     Vector3,
 )
+from pne_sym.model.reader import checked
+from tests.models import module
 from tests.oracle.chain import chain_poses
+from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import (
+    passive_extra_rows,
     platform_position,
     platform_rotation,
     quaternion_of_vector,
@@ -36,7 +40,9 @@ from tests.oracle.coordinates import (
 )
 from tests.oracle.jets import Array, constant
 from tests.oracle.mechanisms import mechanism
+from tests.oracle.projection import complete_acceleration as complete
 from tests.oracle.randomisation import matrix3, random_inertia, vector3
+from tests.oracle.specs import random_state
 from tests.random.judging import judge
 
 FOUND: dict[str, tuple[str, list[str]]] = {
@@ -216,3 +222,41 @@ def test_a_singular_leg_that_transmits_moments_is_refused() -> None:
     doubled = built(Space.TRANSLATIONAL, arms, [[0.5, 0.4, 0.9]] * 3, np.array([0.1, 0.2, 0.3]))
     with pytest.raises(SpecError, match="the leg is singular at home"):
         derive(doubled)
+
+
+def rollers_in_space(order: str) -> Manipulator:
+    """Seven driven legs, each with a roller about its tilted elbow: one drive too many."""
+    rng = np.random.default_rng(1)
+    elbow, beyond = joint(R, TILTED), [joint(P, X, (0.05, 0.02, 0.01), driven=True)]
+    pair = [elbow, replace(elbow, extra=True)]
+    if order == "roller first":
+        pair.reverse()
+    pair[0] = replace(pair[0], offset=(0.1, 0.02, 0.03))
+    end, axis = PlatformJointKind.SPHERICAL, None
+    if order == "with moments":
+        beyond += [joint(R, Y, (0.1, 0.1, 0.05)), joint(R, X, (0.1, 0.2, 0.3))]
+        end, axis = REVOLUTE, Y
+    chain = [joint(R, Z), *pair, *beyond]
+    arms = [
+        arm(chain, end, axis, turned(*rng.uniform(-1, 1, 3)), vector3(rng.uniform(-0.3, 0.3, 3)))
+        for _ in range(7)
+    ]
+    q = [[0.3 + 0.1 * j + 0.07 * k for j in range(len(chain))] for k in range(7)]
+    rolled = [own[chain.index(next(j for j in chain if j.extra))] for own in q]
+    return built(Space.SPATIAL, arms, q, np.array([0.1, 0.2, 0.3, 0.0, 0.0, 0.0, 1.0, *rolled]))
+
+
+@pytest.mark.parametrize("order", ["elbow first", "roller first", "with moments"])
+def test_redundant_drives_do_nothing_to_rollers_about_passive_elbows(order: str) -> None:
+    """The elbow's freedom is the roller's: exactly nothing is done along it by what leaves it."""
+    spec = checked(replace(rollers_in_space(order), name="rollers", title="rollers"))
+    model = module(spec)
+    state = random_state(spec, np.random.default_rng(3), 0.2)
+    rows = passive_extra_rows(spec)
+    assert not model.H(state.X)[rows].any()
+    given = state.A.copy()
+    given[rows] = 0.0
+    found = model.complete_acceleration(state.X, state.V, given)
+    expected = complete(spec, state.X, state.q, state.V, given)
+    assert np.abs(expected[rows]).max() > 1e-2
+    assert relative_error(found, expected) < 1e-10
