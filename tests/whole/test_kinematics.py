@@ -7,15 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.models import catalogue, module, state_at
+from tests.models import catalogue, drawn, module, state_at
 from tests.oracle.comparison import relative_error
 from tests.oracle.coordinates import actuated_indices, displaced, step_between
 from tests.oracle.specs import randomise
-from tests.whole.cases import Array, Case, case
+from tests.whole.cases import Array, Case, case, own
 from tests.whole.supported import SUPPORTED
 
 STEP = 1e-5
 CONSTRAINED = ("fivebar_offset", "tripod_3prs", "tripod_3rps", "tripod_3upu")
+CONSTRAINED_ITERATED = ("spatial_2rr_2hr", "translational_pprhu_rr")
+"""Drawn ones: with platform joints that transmit forces, and moments too."""
 
 
 def later(c: Case, h: float) -> tuple[Array, Array]:
@@ -40,10 +42,37 @@ def test_joint_rates_and_accelerations_are_derivatives(name: str) -> None:
     assert relative_error(m.joint_accelerations(s.X, s.V, s.A, p, **c.guess), qdd) < 1e-7
 
 
-@pytest.mark.parametrize("name", CONSTRAINED)
+def constrained(name: str) -> Case:
+    """A constrained manipulator of the catalogue, or a drawn one at a state of its own."""
+    if name in CONSTRAINED:
+        return case(name, 1)
+    return own(drawn(name), state_at(drawn(name), 1))
+
+
+@pytest.mark.parametrize("name", CONSTRAINED_ITERATED)
+def test_project_with_a_first_guess_for_each_pose(name: str) -> None:
+    """Poses off the manifold come back to it, one by one as together."""
+    c = constrained(name)
+    m, p, s = c.model, c.p, c.state
+    rng = np.random.default_rng(0)
+    off = np.array([displaced(c.spec, s.X, step) for step in rng.uniform(-0.005, 0.005, (6, m.NV))])
+    guess = c.guess["q0"] + rng.uniform(-0.02, 0.02, (6, m.NJ))
+    missed = np.abs(m.constraints(off, p, q0=guess)).max(axis=1)
+    assert missed.min() > 1e-5
+    found = m.project(off.reshape(2, 3, -1), p, q0=guess.reshape(2, 3, -1)).reshape(6, -1)
+    assert np.abs(m.constraints(found, p, q0=guess)).max() < 1e-9
+    steps = np.array([step_between(c.spec, a, b) for a, b in zip(off, found, strict=True)])
+    assert (np.abs(steps).max(axis=1) < 30 * missed).all()
+    for k in range(6):
+        assert np.array_equal(m.project(off[k], p, q0=guess[k]), found[k])
+    shared = m.project(off, p, q0=guess[0])
+    assert np.abs(shared - [m.project(x, p, q0=guess[0]) for x in off]).max() == 0.0
+
+
+@pytest.mark.parametrize("name", CONSTRAINED + CONSTRAINED_ITERATED)
 def test_hk_and_bias_are_derivatives_of_the_constraints(name: str) -> None:
     """On the manifold, for motions that leave it: the rate of `constraints` is Hk^T V."""
-    c = case(name, 1)
+    c = constrained(name)
     m, p, s = c.model, c.p, c.state
     Hk = m.Hk(s.X, p, **c.guess)
     drift = rate_of(lambda X, V: m.Hk(X, p, **c.guess).T @ V, c)
