@@ -106,75 +106,9 @@ def introduce_bodies(book: Book, g: LegGeometry, planar: bool) -> list[LinkBody]
 
 
 def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> LinkBody:
-    legs, frame = g.leg_type, g.frame("spec", g.group[j])
-
-    def parameter(
-        stem: str,
-        shape: tuple[int, ...],
-        unit: str,
-        meaning: str,
-        pick: Any,
-        zeros: tuple[int, ...] = (),
-    ) -> tuple[Any, ...]:
-        paths = tuple(f"legs[{i}].joints[{j - 1}].link.{stem}" for i in legs.indices)
-        return book.parameters.add(
-            ParameterField(
-                f"{legs.name}_link{j}_{stem}",
-                legs.name,
-                shape,
-                unit,
-                meaning,
-                paths,
-                np.asarray(legs.over_legs(pick)),
-                zeros,
-            )
-        )
-
-    (mass,) = parameter(
-        "mass", (), "kg", f"mass of link {j}", lambda leg: leg.joints[j - 1].link.mass
-    )
-    book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", "kg", parameter=True))
-    centre = parameter(
-        "centre_of_mass",
-        (3,),
-        "m",
-        f"centre of mass of link {j}, link frame",
-        lambda leg: leg.joints[j - 1].link.centre_of_mass,
-        (2,) if planar else (),
-    )
-    entries = parameter(
-        "inertia",
-        (3, 3),
-        "kg m^2",
-        f"inertia tensor of link {j} about its centre of mass, link axes",
-        lambda leg: leg.joints[j - 1].link.inertia,
-    )
-    rho = book.give(
-        VectorSymbol(g.name(f"rho_{j}")),
-        frame,
-        centre,
-        Quantity(
-            g.name(f"rho_{j}"),
-            rf"\boldsymbol\rho_{{{j}}}",
-            f"origin of link {j} to its centre of mass, fixed in the link",
-            "m",
-            frame,
-            parameter=True,
-        ),
-    )
-    inertia = book.give(
-        TensorSymbol(g.name(f"I_{j}"), True),
-        frame,
-        symmetric_entries(entries, planar),
-        Quantity(
-            g.name(f"I_{j}"),
-            rf"\mathbf I_{{{j}}}",
-            f"inertia tensor of link {j} about its centre of mass",
-            "kg m^2",
-            frame,
-            parameter=True,
-        ),
-    )
+    """Lumped inertia of link j about its reference point."""
+    frame = g.frame("spec", g.group[j])
+    mass, rho, inertia = _link_parameters(book, g, j, planar=planar)
     arm = rho
     if at_tip and g.offset[g.count + 1] != ZeroVector:
         arm = book.define(
@@ -210,6 +144,67 @@ def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> 
         symmetric=True,
     )
     return LinkBody(j, g.group[j], at_tip, mass, moment, tensor)
+
+
+def _link_parameters(book: Book, g: LegGeometry, j: int, *, planar: bool) -> tuple[Any, Any, Any]:
+    """Mass, centre of mass and inertia tensor of link j, as its specification has them."""
+    frame = g.frame("spec", g.group[j])
+    (mass,) = _link_field(book, g, j, "mass")
+    book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", "kg", parameter=True))
+    centre = _link_field(book, g, j, "centre_of_mass", (2,) if planar else ())
+    entries = _link_field(book, g, j, "inertia")
+    rho = g.name(f"rho_{j}")
+    rho_quantity = Quantity(
+        rho,
+        rf"\boldsymbol\rho_{{{j}}}",
+        f"origin of link {j} to its centre of mass, fixed in the link",
+        "m",
+        frame,
+        parameter=True,
+    )
+    inertia = g.name(f"I_{j}")
+    inertia_quantity = Quantity(
+        inertia,
+        rf"\mathbf I_{{{j}}}",
+        f"inertia tensor of link {j} about its centre of mass",
+        "kg m^2",
+        frame,
+        parameter=True,
+    )
+    return (
+        mass,
+        book.give(VectorSymbol(rho), frame, centre, rho_quantity),
+        book.give(
+            TensorSymbol(inertia, True), frame, symmetric_entries(entries, planar), inertia_quantity
+        ),
+    )
+
+
+_LINK_FIELDS: dict[str, tuple[tuple[int, ...], str, str]] = {
+    "mass": ((), "kg", "mass of link {j}"),
+    "centre_of_mass": ((3,), "m", "centre of mass of link {j}, link frame"),
+    "inertia": ((3, 3), "kg m^2", "inertia tensor of link {j} about its centre of mass, link axes"),
+}
+"""Field of a link -> shape, unit, meaning."""
+
+
+def _link_field(
+    book: Book, g: LegGeometry, j: int, field_name: str, zeros: tuple[int, ...] = ()
+) -> tuple[Any, ...]:
+    """A live parameter of link j: symbols of its entries."""
+    legs, (shape, unit, meaning) = g.leg_type, _LINK_FIELDS[field_name]
+    return book.parameters.add(
+        ParameterField(
+            f"{legs.name}_link{j}_{field_name}",
+            legs.name,
+            shape,
+            unit,
+            meaning.format(j=j),
+            tuple(f"legs[{i}].joints[{j - 1}].link.{field_name}" for i in legs.indices),
+            np.asarray(legs.over_legs(lambda leg: getattr(leg.joints[j - 1].link, field_name))),
+            zeros,
+        )
+    )
 
 
 class DynamicsWriter:
@@ -568,28 +563,51 @@ class DynamicsWriter:
 
     def _solve(self, result: LegDynamics, gamma: dict[int, Any], phi: Any, a_tip: Any) -> None:
         """The leg's force on the platform, Eq. 3 and Eq. 4."""
-        g, motion, book = self.g, self.motion, self.book
-        frame = self.k.tip_frame()
-        G: Any = vector_sum(gamma[j] * w for j, w in motion.w.items() if gamma[j] != 0)
-        if ZeroVector != G:
-            G = self.write.define(
-                "G",
-                G,
-                r"\mathbf G",
-                "force at the connection point that balances the leg's "
-                "inertia and weight along all freedoms",
-                Law.RECIPROCITY,
-                unit="N",
-                coefficient_latex=r"\mathbf C",
-                body=frame,
-                reference="Sec. 2.3",
-            )
-        self.G = G
+        self.G = self._force_balance(gamma)
         self.G_m: Any = self._moment_balance(gamma)
-        c = (
-            self.write.define(
+        self._reduced_force(result, phi)
+        self._moments(result)
+        self._velocity_terms(result)
+        tip_force = result.tip_mass * a_tip if a_tip is not None else ZeroVector
+        result.true_force = result.force
+        if tip_force != ZeroVector:
+            result.true_force = self.book.define(
+                self.g.name("c_true"),
+                result.force - tip_force,
+                r"\mathbf c^*",
+                "leg force on the platform without actuation, the last link's mass included",
+                Law.NEWTON,
+                unit="N",
+                body=self.k.tip_frame(),
+                reference="Eq. 3",
+            )
+
+    def _force_balance(self, gamma: dict[int, Any]) -> Any:
+        """Force at the connection point, from the amounts along the freedoms."""
+        G: Any = vector_sum(gamma[j] * w for j, w in self.motion.w.items() if gamma[j] != 0)
+        if ZeroVector == G:
+            return ZeroVector
+        return self.write.define(
+            "G",
+            G,
+            r"\mathbf G",
+            "force at the connection point that balances the leg's "
+            "inertia and weight along all freedoms",
+            Law.RECIPROCITY,
+            unit="N",
+            coefficient_latex=r"\mathbf C",
+            body=self.k.tip_frame(),
+            reference="Sec. 2.3",
+        )
+
+    def _reduced_force(self, result: LegDynamics, phi: Any) -> None:
+        """The leg's force without its drives and the mass at the tip, and its inertia Q."""
+        frame, a_p = self.k.tip_frame(), self.motion.a_p
+        c: Any = ZeroVector
+        if self.G + phi != ZeroVector:
+            c = self.write.define(
                 "c",
-                -(G + phi),
+                -(self.G + phi),
                 r"\mathbf c",
                 "leg force on the platform without actuation and without the mass at the "
                 "connection point",
@@ -599,16 +617,13 @@ class DynamicsWriter:
                 body=frame,
                 reference="Eq. 3",
             )
-            if G + phi != ZeroVector
-            else ZeroVector
-        )
-        form = motion.known.get(c, LinearForm({}, ZeroVector))
-        result.force, result.form = c, form
+        result.force = c
+        result.form = self.motion.known.get(c, LinearForm({}, ZeroVector))
         result.Q = ZeroTensor
-        if motion.a_p in form.coefficients:
-            result.Q = book.define(
-                g.name("Q"),
-                -form.coefficients[motion.a_p],
+        if a_p in result.form.coefficients:
+            result.Q = self.book.define(
+                self.g.name("Q"),
+                -result.form.coefficients[a_p],
                 r"\mathbf Q",
                 "inertia of the leg at the connection point, without the mass gathered there",
                 Law.RULES,
@@ -617,36 +632,22 @@ class DynamicsWriter:
                 symmetric=True,
                 reference="Eq. 4",
             )
-        self._moments(result)
-        result.U = (
-            ZeroVector
-            if form.remainder == ZeroVector
-            else book.define(
-                g.name("U"),
-                -form.remainder,
+
+    def _velocity_terms(self, result: LegDynamics) -> None:
+        """What is left of the leg's force at zero acceleration: U."""
+        assert result.form is not None
+        result.U = ZeroVector
+        if result.form.remainder != ZeroVector:
+            result.U = self.book.define(
+                self.g.name("U"),
+                -result.form.remainder,
                 r"\mathbf U",
                 "velocity and gravity terms of the leg force",
                 Law.RULES,
                 unit="N",
-                body=frame,
+                body=self.k.tip_frame(),
                 reference="Eq. 4",
             )
-        )
-        tip_force = result.tip_mass * a_tip if a_tip is not None else ZeroVector
-        result.true_force = (
-            c
-            if tip_force == ZeroVector
-            else book.define(
-                g.name("c_true"),
-                c - tip_force,
-                r"\mathbf c^*",
-                "leg force on the platform without actuation, the last link's mass included",
-                Law.NEWTON,
-                unit="N",
-                body=frame,
-                reference="Eq. 3",
-            )
-        )
 
     def _moment_balance(self, gamma: dict[int, Any]) -> Any:
         """Moment of the leg, from its amounts along the moment directions."""

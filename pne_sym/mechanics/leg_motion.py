@@ -147,27 +147,13 @@ class LinearWriter:
         symbol = book.define(
             name, rhs, latex, title, law, unit=unit, body=body, forms=forms, reference=reference
         )
-        coefficients: dict[Any, Any] = {}
-        for k, (unknown, found) in enumerate(form.coefficients.items()):
-            value = motion.named.get(found, found)
-            if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
-                coefficients[unknown] = value
-                continue
-            first = unknown == motion.a_p
-            label = coefficient_latex if first else f"{latex}^{{({_mark(unknown)})}}"
-            short = "d" if first else f"d{k}"
-            coefficients[unknown] = book.define(
-                f"{short}_{name}",
-                value,
-                label,
-                f"coefficient of the acceleration in: {title}",
-                Law.RULES,
-                body=body,
-                linear=form if first else None,
-                expanded=rhs,
-                reference="Sec. 2.3, Eq. 4",
-                unit=f"({unit})/(m/s^2)" if first else "",
+        words = latex, coefficient_latex, title
+        coefficients = {
+            unknown: self._coefficient(
+                k, unknown, form, words, rhs, name=name, unit=unit, body=body
             )
+            for k, unknown in enumerate(form.coefficients)
+        }
         remainder = form.remainder
         if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
             remainder = book.define(
@@ -188,6 +174,40 @@ class LinearWriter:
         else:
             book.collect_no_coefficients(name)
         return symbol
+
+    def _coefficient(
+        self,
+        k: int,
+        unknown: Any,
+        form: LinearForm,
+        words: tuple[str, str, str],
+        rhs: Any,
+        *,
+        name: str,
+        unit: str,
+        body: str | None,
+    ) -> Any:
+        """Coefficient k of a form: by its name if it has one, else defined.
+
+        The words are the quantity's LaTeX, that of its first coefficient, and its title.
+        """
+        value = self.motion.named.get(form.coefficients[unknown], form.coefficients[unknown])
+        if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
+            return value
+        latex, coefficient_latex, title = words
+        first = unknown == self.motion.a_p
+        return self.book.define(
+            f"d_{name}" if first else f"d{k}_{name}",
+            value,
+            coefficient_latex if first else f"{latex}^{{({_mark(unknown)})}}",
+            f"coefficient of the acceleration in: {title}",
+            Law.RULES,
+            body=body,
+            linear=form if first else None,
+            expanded=rhs,
+            reference="Sec. 2.3, Eq. 4",
+            unit=f"({unit})/(m/s^2)" if first else "",
+        )
 
 
 # Units of what is reciprocal to the freedom of a joint, by whether the joint turns.
