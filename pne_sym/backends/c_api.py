@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from pne_sym.backends.bundle import Bundle
@@ -78,58 +79,36 @@ def _vectors(d: Described) -> dict[str, Argument]:
 
 def _program_functions(bundle: Bundle, d: Described) -> list[Api]:
     """What the program computes as it is."""
-    n, v, functions = d.sizes, _vectors(d), bundle.program.functions
+    n, v = d.sizes, _vectors(d)
     X, V, A = v["X"], v["V"], v["A"]
-    M, Z = Argument("M", n["NV"] ** 2, "NV x NV"), Argument("Z", n["NV"], "NV")
-    H, Hk = (
-        Argument("H", n["NV"] * n["NU"], "NV x NU"),
-        Argument("Hk", n["NV"] * n["NC"], "NV x NC"),
+
+    def made(name: str, *shape: str) -> Argument:
+        return Argument(name, math.prod(n[s] for s in shape), " x ".join(shape))
+
+    M, Z, H = made("M", "NV", "NV"), made("Z", "NV"), made("H", "NV", "NU")
+    rows: list[tuple[str, str, tuple[Argument, ...], Argument, str]] = [
+        ("M", "Inertia matrix M.", (X,), M, "M"),
+        ("Z", "Velocity and gravity terms Z.", (X, V), Z, "Z"),
+        ("H", "Force transformation H: actuators to task space.", (X,), H, "H"),
+        ("Hk", "Directions Hk of the constraint forces lambda.", (X,), made("Hk", "NV", "NC"),
+         "Hk"),
+        ("constraints", "Residuals of the constraints [m]; zero where the loops close.", (X,),
+         made("residual", "NC"), "constraints"),
+        ("constraint_bias", "The vector bias in Hk^T A + bias = 0.", (X, V), made("bias", "NC"),
+         "constraint_bias"),
+        ("inverse_kinematics",
+         "Displacements q of all joints, on the assembly branch of home.", (X,), made("q", "NJ"),
+         "q"),
+        ("joint_rates", "Rates of all joints.", (X, V), made("rates", "NJ"), "qd"),
+        ("joint_accelerations", "Accelerations of all joints.", (X, V, A),
+         made("accelerations", "NJ"), "qdd"),
+    ]  # fmt: skip
+    single = [Api(name, does, given, (out,), (of,)) for name, does, given, out, of in rows]
+    together = Api(
+        "dynamics", "M, Z and H together, sharing the work.", (X, V), (M, Z, H), ("M", "Z", "H")
     )
-    rows = [
-        Api("M", "Inertia matrix M.", (X,), (M,), ("M",)),
-        Api("Z", "Velocity and gravity terms Z.", (X, V), (Z,), ("Z",)),
-        Api("H", "Force transformation H: actuators to task space.", (X,), (H,), ("H",)),
-        Api("Hk", "Directions Hk of the constraint forces lambda.", (X,), (Hk,), ("Hk",)),
-        Api(
-            "dynamics", "M, Z and H together, sharing the work.", (X, V), (M, Z, H), ("M", "Z", "H")
-        ),
-        Api(
-            "constraints",
-            "Residuals of the constraints [m]; zero where the loops close.",
-            (X,),
-            (Argument("residual", n["NC"], "NC"),),
-            ("constraints",),
-        ),
-        Api(
-            "constraint_bias",
-            "The vector bias in Hk^T A + bias = 0.",
-            (X, V),
-            (Argument("bias", n["NC"], "NC"),),
-            ("constraint_bias",),
-        ),
-        Api(
-            "inverse_kinematics",
-            "Displacements q of all joints, on the assembly branch of home.",
-            (X,),
-            (Argument("q", n["NJ"], "NJ"),),
-            ("q",),
-        ),
-        Api(
-            "joint_rates",
-            "Rates of all joints.",
-            (X, V),
-            (Argument("rates", n["NJ"], "NJ"),),
-            ("qd",),
-        ),
-        Api(
-            "joint_accelerations",
-            "Accelerations of all joints.",
-            (X, V, A),
-            (Argument("accelerations", n["NJ"], "NJ"),),
-            ("qdd",),
-        ),
-    ]
-    return [replace(a, lanes=True) for a in rows if a.name in functions]
+    apis = [*single[:4], together, *single[4:]]
+    return [replace(a, lanes=True) for a in apis if a.name in bundle.program.functions]
 
 
 def _solved(d: Described) -> list[Api]:

@@ -9,16 +9,11 @@ import typer
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
-from pne_sym.cli.options import Debug
+from pne_sym.cli.options import Debug, Source
 
 
 def draw(
-    source: Annotated[
-        str,
-        typer.Argument(
-            metavar="NAME_OR_SPEC", help="A name in the catalogue or a spec file (.toml, .json)."
-        ),
-    ],
+    source: Source,
     out: Annotated[
         Path | None,
         typer.Option(

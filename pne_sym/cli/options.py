@@ -1,4 +1,4 @@
-"""Options that several commands have."""
+"""Arguments and options that several commands have."""
 
 from __future__ import annotations
 
@@ -7,3 +7,10 @@ from typing import Annotated
 import typer
 
 Debug = Annotated[bool, typer.Option("--debug", help="Show the traceback of an internal error.")]
+
+Source = Annotated[
+    str,
+    typer.Argument(
+        metavar="NAME_OR_SPEC", help="A name in the catalogue or a spec file (.toml, .json)."
+    ),
+]

@@ -9,7 +9,7 @@ import typer
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
-from pne_sym.cli.options import Debug
+from pne_sym.cli.options import Debug, Source
 
 
 class Stage(StrEnum):
@@ -23,12 +23,7 @@ class Stage(StrEnum):
 
 
 def explain(
-    source: Annotated[
-        str,
-        typer.Argument(
-            metavar="NAME_OR_SPEC", help="A name in the catalogue or a spec file (.toml, .json)."
-        ),
-    ],
+    source: Source,
     equation: Annotated[
         str | None,
         typer.Argument(

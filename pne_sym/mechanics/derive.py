@@ -10,7 +10,7 @@ from pne_sym.mechanics.completion import completion_at_home
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
-from pne_sym.mechanics.leg_geometry import build_geometry
+from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
@@ -19,7 +19,7 @@ from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
 from pne_sym.model.manipulator import JointKind, Manipulator
-from pne_sym.vector import Dot, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
+from pne_sym.vector import Dot, Vector, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
 
 
 def derive(manipulator: Manipulator) -> Derivation:
@@ -90,6 +90,50 @@ def _derive_leg(
     # Links that all turn together are one body; else composite bodies cost less.
     g.composite = len({body.group for body in bodies}) > 1
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
+    inverse = _inverse_kinematics(book, manipulator, space, platform, g)
+    book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
+    kinematics = MotionWriter(book, g, platform, space, inverse)
+    motion = kinematics.write(prefix)
+    text = _NEWTON_EULER + (_COMPOSITE if g.composite else "") + (_MOMENTS if g.pairs else "")
+    book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
+    dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
+    leg = Leg(g, motion, dynamics)
+    _joint_outputs(book, manipulator, leg, inverse)
+    if not inverse.is_closed:
+        _closure_outputs(book, leg, kinematics.tip_frame(), space)
+    return leg, kinematics
+
+
+def _inverse_kinematics(
+    book: Book,
+    manipulator: Manipulator,
+    space: TaskSpace,
+    platform: PlatformMotion,
+    g: LegGeometry,
+) -> InverseKinematics:
+    """Displacements in closed form, or else given; settles how missing freedoms are completed."""
+    S, x = _connection(book, platform, g)
+    freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
+    constrained = (2 if space.planar else 3) + len(g.pairs) > len(freedoms)
+    if constrained and not space.planar:
+        g.completion = completion_at_home(manipulator, g)
+    flat = constrained and not space.planar and not g.pairs
+    normal = axis_across(g, freedoms) if flat else None
+    before = book.mark()
+    inverse = invert(book, g, x, normal, constrained=constrained)
+    if not inverse.is_closed:
+        book.reset(before)
+        book.retext(_ITERATED)
+        inverse = given_displacements(book, g, inverse.reasons)
+    inverse.S = S
+    signs = branch_signs(manipulator, g, inverse, book)
+    for branch, of_legs in zip(inverse.branches, signs, strict=True):
+        book.parameters.add_branch(branch.symbol.name, g.leg_type.name, of_legs)
+    return inverse
+
+
+def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[Vector, Vector]:
+    """The connection point from the base point, and from the origin of joint 1."""
     S = book.define(
         g.name("S"),
         vector_sum((platform.t, g.platform_point, -g.base_point)),
@@ -111,35 +155,7 @@ def _derive_leg(
             unit="m",
             body=g.frame("axes", 0),
         )
-    freedoms = [j for j in range(1, g.count + 1) if not g.is_extra(j)]
-    missing = (2 if space.planar else 3) + len(g.pairs) - len(freedoms)
-    constrained = missing > 0
-    if constrained and not space.planar:
-        g.completion = completion_at_home(manipulator, g)
-    flat = constrained and not space.planar and not g.pairs
-    normal = axis_across(g, freedoms) if flat else None
-    before = book.mark()
-    inverse = invert(book, g, x, normal, constrained=constrained)
-    if not inverse.is_closed:
-        book.reset(before)
-        book.retext(_ITERATED)
-        inverse = given_displacements(book, g, inverse.reasons)
-    inverse.S = S
-    for branch, signs in zip(
-        inverse.branches, branch_signs(manipulator, g, inverse, book), strict=True
-    ):
-        book.parameters.add_branch(branch.symbol.name, leg_type.name, signs)
-    book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
-    kinematics = MotionWriter(book, g, platform, space, inverse)
-    motion = kinematics.write(prefix)
-    text = _NEWTON_EULER + (_COMPOSITE if g.composite else "") + (_MOMENTS if g.pairs else "")
-    book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
-    dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
-    leg = Leg(g, motion, dynamics)
-    _joint_outputs(book, manipulator, leg, inverse)
-    if not inverse.is_closed:
-        _closure_outputs(book, leg, kinematics.tip_frame(), space)
-    return leg, kinematics
+    return S, x
 
 
 def _info(leg_type: LegType, inverse: InverseKinematics, transmitted: int) -> LegTypeInfo:

@@ -375,23 +375,9 @@ class _Solver:
     def _projection(self, j: int, x: Vector, u: Vector, value: Any, method: str) -> Vector:
         """Solve u . x = value for the angle of joint j, u turning with link j."""
         g, e = self.g, self.g.e[j]
-        reference, across, _ = self._turn_axes(j)
-        n, m = self._link_axes(j)
         of_x, of_u, of_product = _UNITS[method]
-        A = self._scalar(
-            f"px_{j}",
-            Dot(reference, x),
-            f"x_{{{j}}}",
-            "component along the reference direction",
-            of_x,
-        )
-        B = self._scalar(
-            f"py_{j}",
-            Dot(across, x),
-            f"y_{{{j}}}",
-            "component across the reference direction",
-            of_x,
-        )
+        A, B = self._in_turning_plane(j, x, of_x)
+        n, m = self._link_axes(j)
         u_n, u_m, along_axis = self._pattern(j, method, u)
         if u_n is None:
             u_n = self._constant_of_link(f"un_{j}", Dot(u, n), of_u)
@@ -419,6 +405,43 @@ class _Solver:
             f"right-hand side of the equation of joint {j}",
             of_product,
         )
+        root = self._turned(j, K, N, C, method)
+        x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
+        of_square = "m^2" if of_u == "m" else "-"
+        length2 = self._constant_of_link(f"uu_{j}", u_n**2 + u_m**2, of_square)
+        resolved: Vector = self.book.define(
+            g.name(f"xi_{j}"),
+            (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
+            rf"\boldsymbol\xi_{{{j}}}",
+            f"the vector from joint {j} to the connection point, resolved along link {j}",
+            Law.LOOP_CLOSURE,
+            unit=of_x,
+            body=g.frame("axes", j),
+        )
+        return resolved
+
+    def _in_turning_plane(self, j: int, x: Vector, unit: str) -> tuple[Any, Any]:
+        """Components of x along and across the direction from which joint j's angle counts."""
+        reference, across, _ = self._turn_axes(j)
+        A = self._scalar(
+            f"px_{j}",
+            Dot(reference, x),
+            f"x_{{{j}}}",
+            "component along the reference direction",
+            unit,
+        )
+        B = self._scalar(
+            f"py_{j}",
+            Dot(across, x),
+            f"y_{{{j}}}",
+            "component across the reference direction",
+            unit,
+        )
+        return A, B
+
+    def _turned(self, j: int, K: Any, N: Any, C: Any, method: str) -> Any:
+        """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
+        g, of_product = self.g, _UNITS[method][2]
         unit, scale = {
             "linear": ("m^2", g.size**2),
             "sphere": ("m^4", g.size**4),
@@ -444,37 +467,24 @@ class _Solver:
                 of_product,
             )
             self._cosine_sine(j, -N / root, K / root)
-            x_n, x_m = u_m * root, -u_n * root
-        else:
-            discriminant = self._scalar(
-                f"disc_{j}",
-                rho2 - C**2,
-                rf"\Delta_{{{j}}}",
-                "discriminant",
-                unit,
-                conditions=(Condition(Trouble.UNREACHABLE, rho2 - C**2),),
-            )
-            root = self._scalar(
-                f"root_{j}",
-                sigma * sp.sqrt(discriminant),
-                rf"r_{{{j}}}",
-                "root, with the sign of the branch",
-                of_product,
-            )
-            self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
-            x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
-        of_square = "m^2" if of_u == "m" else "-"
-        length2 = self._constant_of_link(f"uu_{j}", u_n**2 + u_m**2, of_square)
-        resolved: Vector = self.book.define(
-            g.name(f"xi_{j}"),
-            (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
-            rf"\boldsymbol\xi_{{{j}}}",
-            f"the vector from joint {j} to the connection point, resolved along link {j}",
-            Law.LOOP_CLOSURE,
-            unit=of_x,
-            body=g.frame("axes", j),
+            return root
+        discriminant = self._scalar(
+            f"disc_{j}",
+            rho2 - C**2,
+            rf"\Delta_{{{j}}}",
+            "discriminant",
+            unit,
+            conditions=(Condition(Trouble.UNREACHABLE, rho2 - C**2),),
         )
-        return resolved
+        root = self._scalar(
+            f"root_{j}",
+            sigma * sp.sqrt(discriminant),
+            rf"r_{{{j}}}",
+            "root, with the sign of the branch",
+            of_product,
+        )
+        self._cosine_sine(j, (C * K - root * N) / rho2, (C * N + root * K) / rho2)
+        return root
 
     def _pattern(self, j: int, method: str, u: Vector) -> tuple[Any, Any, Any]:
         """Components of u in link j's canonical axes where the structure fixes them, else None."""
