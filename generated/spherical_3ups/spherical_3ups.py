@@ -738,7 +738,7 @@ def _dynamics_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z,
         J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12, J_star_t_13, J_star_t_15, Z_q_in_base_x,
@@ -1044,7 +1044,7 @@ def _M_before(c, X, f):
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, J_star_t_8, J_star_t_9,
         J_star_t_10, J_star_t_12, J_star_t_13, J_star_t_15,), (),
@@ -1244,7 +1244,7 @@ def _Z_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z,
         Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z,), (),
@@ -1451,7 +1451,7 @@ def _H_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -1581,7 +1581,7 @@ def _required_before(c, X, V, A, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z, alpha_x,
         alpha_y, alpha_z, mu_p_in_base_x, mu_p_in_base_y, mu_p_in_base_z,), (),
@@ -1792,7 +1792,7 @@ def _inverse_kinematics_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -1883,7 +1883,7 @@ def _joint_rates_before(c, X, V, f):
     omega_x = V_0
     omega_y = V_1
     omega_z = V_2
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z,), (),
     )
@@ -2005,7 +2005,7 @@ def _joint_accelerations_before(c, X, V, A, f):
     alpha_x = A_0
     alpha_y = A_1
     alpha_z = A_2
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z, alpha_x,
         alpha_y, alpha_z,), (),
@@ -2158,7 +2158,7 @@ def _legs_before(c, X, V, A, f):
     alpha_x = A_0
     alpha_y = A_1
     alpha_z = A_2
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z, alpha_x,
         alpha_y, alpha_z,), (),
@@ -2372,7 +2372,7 @@ def _potential_before(c, X, f):
         gravity_y*(potential_t_2 + R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z) +
         gravity_z*(potential_t_3 + R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z)
     )
-    ok = (quaternion_norm2 > 0.0)
+    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
     return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, potential_t_4,), (),)
 
 
@@ -3056,7 +3056,8 @@ def rotation(X):
     X = _vector("rotation", "X", X, NQ)
     with np.errstate(all="ignore"):
         q = X[..., _Q : _Q + 4]
-        x, y, z, w = np.moveaxis(q / np.linalg.norm(q, axis=-1, keepdims=True), -1, 0)
+        length = np.linalg.norm(q, axis=-1, keepdims=True)
+        x, y, z, w = np.moveaxis(q / np.where(np.isfinite(length), length, np.nan), -1, 0)
     rows = (
         (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
         (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),

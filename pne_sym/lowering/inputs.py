@@ -51,14 +51,16 @@ def _pose(coordinates: Coordinates) -> tuple[list[Assignment], list[Check]]:
         assignments.append(Assignment(_symbol("R_xx"), sp.cos(phi), "X"))
         assignments.append(Assignment(_symbol("R_yx"), sp.sin(phi), "X"))
     if coordinates.has_quaternion:
-        rotation, check = _quaternion(coordinates.pose.index("qx"))
+        rotation, checks = _quaternion(coordinates.pose.index("qx"))
         assignments.extend(rotation)
-        checks.append(check)
     return assignments, checks
 
 
-def _quaternion(first: int) -> tuple[list[Assignment], Check]:
-    """Rotation matrix of a quaternion of any length other than zero."""
+def _quaternion(first: int) -> tuple[list[Assignment], list[Check]]:
+    """Rotation matrix of a quaternion of any length other than zero.
+
+    A squared length that overflows leaves nothing of the scale: that is checked too.
+    """
     x, y, z, w = (entry("X", first + k) for k in range(4))
     n, s = _symbol("quaternion_norm2"), _symbol("quaternion_scale")
     made: list[Assignment] = [
@@ -91,7 +93,7 @@ def _quaternion(first: int) -> tuple[list[Assignment], Check]:
     for i, row in enumerate(rows):
         for j, value in enumerate(row):
             let(f"R_{_AXES[i]}{_AXES[j]}", value)
-    return made, Check("invalid", n, sp.S.One, 2, "X")
+    return made, [Check("invalid", value, sp.S.One, 2, "X") for value in (n, s)]
 
 
 def leg_inputs(derivation: Derivation, symbol: str, leg_type: str) -> tuple[str, tuple[int, ...]]:

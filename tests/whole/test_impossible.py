@@ -71,6 +71,25 @@ def test_input_that_is_not_finite(name: str, count: int) -> None:
 
 
 @pytest.mark.parametrize("count", [FEW, MANY])
+@pytest.mark.parametrize("name", ["spherical_3ups", "stewart"])
+def test_a_quaternion_of_no_length_or_too_long(name: str, count: int) -> None:
+    """Its squared length vanishes, or overflows; shorter ones need not be normalised."""
+    c = case(name, 1)
+    vectors = states(c, (count,))
+    start = 3 if name == "stewart" else 0
+    for function in (*OF_THE_LEGS[:-1], "rotation"):
+        before = call(c, function, vectors)
+        for factor in (0.0, 1e160, 1e100):
+            X = vectors["X"].copy()
+            X[1, start : start + 4] *= factor
+            found = call(c, function, vectors | {"X": X})
+            if factor == 1e100:
+                assert all(np.isfinite(value).all() for value in found), function
+            else:
+                assert_only(before, found, 1, f"{function}, {factor}")
+
+
+@pytest.mark.parametrize("count", [FEW, MANY])
 @pytest.mark.parametrize("name", UNREACHABLE)
 def test_a_leg_that_does_not_reach(name: str, count: int) -> None:
     """The platform tens of metres off: no function has a value there."""

@@ -97,7 +97,10 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         )
     lines += [
         "**Singular drives**: H has no full rank; inverse dynamics needs that, M, Z and H do not.",
-        "**Invalid**: an entry of the input is not finite, or a quaternion is zero.",
+        (
+            "**Invalid**: an entry of the input is not finite, or a quaternion is zero, "
+            "or so long that its squared length overflows."
+        ),
     ]
     return tuple(lines)
 
