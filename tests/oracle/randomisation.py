@@ -269,9 +269,13 @@ def random_state(manipulator: Manipulator, rng: np.random.Generator, spread: flo
 
 
 class _Quality(NamedTuple):
-    """Reciprocal condition numbers, of the legs and of the drives; multipliers' number."""
+    """Reciprocal condition numbers, of the legs and of the drives; multipliers' number.
+
+    And the sides of their singularities that the legs are on: sign of the determinant.
+    """
 
     legs: tuple[float, ...]
+    sides: tuple[float, ...]
     drives: float
     multipliers: int
     axes_agree: bool
@@ -285,12 +289,16 @@ def _quality(manipulator: Manipulator, X: Array, q: Array) -> _Quality:
         [index for index, joint in enumerate(leg.joints) if not joint.extra]
         for leg in manipulator.legs
     ]
-    legs = tuple(
-        _reciprocal_condition(leg.jacobian[:, columns])
-        for leg, columns in zip(state.legs, free, strict=True)
-    )
+    jacobians = [leg.jacobian[:, columns] for leg, columns in zip(state.legs, free, strict=True)]
+    legs = tuple(map(_reciprocal_condition, jacobians))
     drives = _reciprocal_condition(_drive_matrix(state))
-    return _Quality(legs, drives, state.Hk.shape[1], _axes_agree(manipulator, X, state))
+    return _Quality(
+        legs,
+        tuple(map(_side, jacobians)),
+        drives,
+        state.Hk.shape[1],
+        _axes_agree(manipulator, X, state),
+    )
 
 
 def _drive_matrix(state: Result) -> Array:
@@ -303,6 +311,12 @@ def _drive_matrix(state: Result) -> Array:
 def _reciprocal_condition(matrix: Array) -> float:
     values = np.linalg.svd(matrix, compute_uv=False)
     return float(values.min() / values.max())
+
+
+def _side(jacobian: Array) -> float:
+    """Sign of the determinant: where it turns, continuation has passed to another branch."""
+    square = jacobian.shape[0] == jacobian.shape[1]
+    return float(np.sign(np.linalg.det(jacobian))) if square else 0.0
 
 
 def _axes_agree(manipulator: Manipulator, X: Array, state: Result) -> bool:
@@ -322,6 +336,7 @@ def _acceptable(quality: _Quality, nominal: _Quality) -> bool:
     return (
         quality.axes_agree
         and quality.multipliers == nominal.multipliers
+        and quality.sides == nominal.sides
         and all(a > 0.3 * b for a, b in zip(quality.legs, nominal.legs, strict=True))
         and quality.drives > 0.3 * nominal.drives
     )
