@@ -12,6 +12,7 @@ from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displa
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
 from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.mobility import check_solvable
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
@@ -34,6 +35,7 @@ def derive(manipulator: Manipulator) -> Derivation:
     legs = []
     for leg_type in types:
         check_scope(manipulator, leg_type, space)
+    check_solvable(manipulator)
     for leg_type in types:
         suffix = "" if len(types) == 1 else f"_{leg_type.name}"
         legs.append(_derive_leg(book, manipulator, space, platform, leg_type, suffix))

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pne_sym.model.closure import TWIST, leg_gap, pose_at
-from pne_sym.model.errors import SpecWarning
+from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Manipulator
 
@@ -130,6 +130,36 @@ def check_mobility(manipulator: Manipulator) -> Mobility:
     return found
 
 
+def check_solvable(manipulator: Manipulator) -> None:
+    """Refuse what has no determined dynamics, with the mechanical reason.
+
+    Raises:
+        SpecError: no joint is driven; the constraints that the legs put on the platform follow
+            from one another at home, so that their forces are undetermined; nothing moves.
+    """
+    found = mobility(manipulator)
+    if not found.drives:
+        raise SpecError(
+            manipulator.name, "legs", "no joint is driven", "actuated = true for some joint"
+        )
+    if found.overconstrained:
+        raise SpecError(
+            manipulator.name,
+            "legs",
+            f"overconstrained: of the {found.constraints} constraints that the legs put on the "
+            f"platform, {found.overconstrained} follow from the others at home, so that their "
+            "forces are undetermined",
+            "legs whose constraints are independent: more joints in a leg, or another home",
+        )
+    if not found.freedoms:
+        raise SpecError(
+            manipulator.name,
+            "legs",
+            "the legs hold the platform: nothing moves at home",
+            "at least one degree of freedom",
+        )
+
+
 def drive_quality(manipulator: Manipulator) -> float:
     """How well the drives hold the mechanism at home: 0 not at all, 1 at best.
 
@@ -179,17 +209,19 @@ def _cases(manipulator: Manipulator, freedoms: int, constraints: int) -> tuple[s
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     kinematic = any(joint.extra and joint.actuated for joint in joints)
+    passive = sum(joint.extra and not joint.actuated for joint in joints)
+    driven = freedoms - passive  # that the drives are to determine
     found = []
-    if len(manipulator.legs) > freedoms:
+    if len(manipulator.legs) > driven:
         found.append("3.3")
     if max(drives) > 1:
-        if sum(drives) > freedoms:
+        if sum(drives) > driven:
             found.append("3.4")
         elif not kinematic:
             found.append("3.2")
     if kinematic:
         found.append("3.5")
-    if any(joint.extra and not joint.actuated for joint in joints):
+    if passive:
         found.append("3.6")
     if constraints:
         found.append("3.7")
