@@ -9,11 +9,13 @@ import numpy as np
 import pytest
 
 from pne_sym import manipulators
-from pne_sym.mechanics.mobility import check_mobility, mobility
-from pne_sym.model.errors import SpecWarning
-from pne_sym.model.manipulator import Manipulator
+from pne_sym.mechanics.derive import derive
+from pne_sym.mechanics.mobility import check_mobility, check_solvable, mobility
+from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.manipulator import Leg, Manipulator
 from tests.oracle.closure import leg_closure
 from tests.oracle.coordinates import joint_slices, twist_basis
+from tests.oracle.mechanisms import mechanism
 
 # freedoms, drives, constraints, extra coordinates, passive ones, cases of section 3
 KNOWN: dict[str, tuple[int, int, int, int, int, tuple[str, ...]]] = {
@@ -127,3 +129,43 @@ def test_one_line_for_people() -> None:
         "section 3 of the paper: constrained: legs that restrict the platform (3.7)"
     )
     assert "6 extra coordinates (6 passive)" in str(mobility(manipulators.load("stewart_sps")))
+
+
+def test_passive_freedoms_do_not_hide_redundancy() -> None:
+    """Four driven legs for three freedoms of the platform, each with a passive roller."""
+    rollers = mechanism("planar", ["Rz Px* Rz+ | R"] * 4, np.random.default_rng(1))
+    found = mobility(rollers)
+    assert (found.freedoms, found.drives, found.passive) == (7, 4, 4)
+    assert found.cases == ("3.3", "3.6")
+
+
+def one_guide() -> Manipulator:
+    """A driven slide that carries a platform without turning: two constraints."""
+    return mechanism("translational", ["Px* | S"], np.random.default_rng(0))
+
+
+def beside(manipulator: Manipulator, leg: Leg) -> Manipulator:
+    """The manipulator with one more leg of the same displacements."""
+    home = replace(manipulator.home, q=(*manipulator.home.q, *manipulator.home.q))
+    return replace(manipulator, legs=(*manipulator.legs, leg), home=home)
+
+
+def test_two_parallel_guides_are_overconstrained() -> None:
+    """The second does nothing that the first does not: who bears the load stays open."""
+    guide = one_guide()
+    derive(guide)
+    with pytest.raises(SpecError, match=r"of the 4 constraints .* 2 follow from the others"):
+        derive(beside(guide, guide.legs[0]))
+
+
+def test_two_crossed_guides_do_not_move() -> None:
+    spec = mechanism("point", ["Px* | R"], np.random.default_rng(0))
+    joints = tuple(replace(joint, axis=(0.0, 1.0, 0.0)) for joint in spec.legs[0].joints)
+    with pytest.raises(SpecError, match="nothing moves at home"):
+        check_solvable(beside(spec, replace(spec.legs[0], joints=joints)))
+
+
+@pytest.mark.parametrize("name", ["delta", "stewart"])
+def test_a_mechanism_without_drives_is_refused(name: str) -> None:
+    with pytest.raises(SpecError, match="no joint is driven; expected actuated = true"):
+        derive(without_drives(manipulators.load(name)))

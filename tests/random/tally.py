@@ -29,6 +29,9 @@ MECHANICAL = (
     r"\d+ freedoms where the platform joint leaves \d+ to be determined",
     r"the leg is singular at home",
     r"two solutions of the inverse kinematics meet at home",
+    r"overconstrained: of the \d+ constraints",
+    r"the legs hold the platform: nothing moves at home",
+    r"no joint is driven",
 )
 """Reasons for which a mechanism is outside the method."""
 
