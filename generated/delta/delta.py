@@ -894,7 +894,7 @@ def _dynamics_rus(c, k, x, s, f):
     # (rus-A23) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_2_o_t - zeta_3_x
     alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y
-    # (rus-A25) acceleration tensor of link 3
+    # (rus-A25) remainder of the acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y
@@ -1374,7 +1374,7 @@ def _Z_rus(c, k, x, s, f):
     # (rus-A23) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_2_o_t - zeta_3_x
     alpha_3_o_y = -alpha_2_o_t_2 - zeta_3_y
-    # (rus-A25) acceleration tensor of link 3
+    # (rus-A25) remainder of the acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y

@@ -2273,7 +2273,7 @@ def _constraints_rr(c, k, x, s, f):
     rho2_1_rr = n_c_rr_t*(rho2_1_rr_t*rho2_1_rr_t + rho2_1_rr_t_2*rho2_1_rr_t_2)
     # (rr-K5) cosine of the angle of joint 1 from its reference direction
     inv_root_1_rr = 1.0/(sqrt(rho2_1_rr))
-    # (M11) distance by which the leg misses the connection point, along a direction left out
+    # (M11) distance by which the leg misses the platform, along a direction left out
     phi_c1_rr_t = (
     n_c_rr_x*(inv_root_1_rr*rho2_1_rr_t*rho2_1_rr_t*rr_platform_joint_offset_x +
         inv_root_1_rr*rho2_1_rr_t_2*rho2_1_rr_t_2*rr_platform_joint_offset_x -

@@ -1367,7 +1367,7 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         /* (pus-A18) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = -alpha_2_o_t - zeta_3_x;
         const real alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y;
-        /* (pus-A20) acceleration tensor of link 3 */
+        /* (pus-A20) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = zeta_3_y - alpha_3_o_y;
@@ -2411,7 +2411,7 @@ INLINE void Z_legs_pus(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (pus-A18) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = -alpha_2_o_t - zeta_3_x;
         const real alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y;
-        /* (pus-A20) acceleration tensor of link 3 */
+        /* (pus-A20) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = zeta_3_y - alpha_3_o_y;

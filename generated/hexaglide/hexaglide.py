@@ -1030,7 +1030,7 @@ def _dynamics_pus(c, k, x, s, f):
     # (pus-A18) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = -alpha_2_o_t - zeta_3_x
     alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y
-    # (pus-A20) acceleration tensor of link 3
+    # (pus-A20) remainder of the acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y
@@ -1668,7 +1668,7 @@ def _Z_pus(c, k, x, s, f):
     # (pus-A18) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = -alpha_2_o_t - zeta_3_x
     alpha_3_o_y = alpha_2_o_t_2 - zeta_3_y
-    # (pus-A20) acceleration tensor of link 3
+    # (pus-A20) remainder of the acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = zeta_3_y - alpha_3_o_y

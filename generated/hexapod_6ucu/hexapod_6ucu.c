@@ -1621,7 +1621,7 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         /* (upru-A23) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upru-A25) acceleration tensor of link 2 */
+        /* (upru-A25) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_1_o_t_2 - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_1_o_t_2;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
@@ -1648,7 +1648,7 @@ INLINE void dynamics_legs_upru(const prepared *m, size_t leg, size_t legs, const
         const real W_4_t = omega_4_z*omega_4_z;
         const real W_4_xz = omega_2_r1_x*omega_4_z;
         const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A31) acceleration tensor of link 4 */
+        /* (upru-A31) remainder of the acceleration tensor of link 4 */
         const real B_4_o_xy = W_2_xy_2 - alpha_4_o_z;
         const real B_4_o_xz = W_4_xz + alpha_4_o_y;
         const real B_4_o_yx = W_2_xy_2 + alpha_4_o_z;
@@ -2992,7 +2992,7 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (upru-A23) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (upru-A25) acceleration tensor of link 2 */
+        /* (upru-A25) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_1_o_t_2 - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_1_o_t_2;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
@@ -3019,7 +3019,7 @@ INLINE void Z_legs_upru(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real W_4_t = omega_4_z*omega_4_z;
         const real W_4_xz = omega_2_r1_x*omega_4_z;
         const real W_4_yz = omega_2_r1_y*omega_4_z;
-        /* (upru-A31) acceleration tensor of link 4 */
+        /* (upru-A31) remainder of the acceleration tensor of link 4 */
         const real B_4_o_xy = W_2_xy_2 - alpha_4_o_z;
         const real B_4_o_xz = W_4_xz + alpha_4_o_y;
         const real B_4_o_yx = W_2_xy_2 + alpha_4_o_z;

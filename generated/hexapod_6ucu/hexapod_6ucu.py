@@ -1265,7 +1265,7 @@ def _dynamics_upru(c, k, x, s, f):
     # (upru-A23) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (upru-A25) acceleration tensor of link 2
+    # (upru-A25) remainder of the acceleration tensor of link 2
     B_2_o_xy = qdd_1_o_t_2 - W_2_xy
     B_2_o_yx = -W_2_xy - qdd_1_o_t_2
     B_2_o_zx = zeta_2_y - alpha_2_o_y
@@ -1295,7 +1295,7 @@ def _dynamics_upru(c, k, x, s, f):
     W_4_t = omega_4_z*omega_4_z
     W_4_xz = omega_2_r1_x*omega_4_z
     W_4_yz = omega_2_r1_y*omega_4_z
-    # (upru-A31) acceleration tensor of link 4
+    # (upru-A31) remainder of the acceleration tensor of link 4
     B_4_o_xy = W_2_xy_2 - alpha_4_o_z
     B_4_o_xz = W_4_xz + alpha_4_o_y
     B_4_o_yx = W_2_xy_2 + alpha_4_o_z
@@ -2195,7 +2195,7 @@ def _Z_upru(c, k, x, s, f):
     # (upru-A23) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (upru-A25) acceleration tensor of link 2
+    # (upru-A25) remainder of the acceleration tensor of link 2
     B_2_o_xy = qdd_1_o_t_2 - W_2_xy
     B_2_o_yx = -W_2_xy - qdd_1_o_t_2
     B_2_o_zx = zeta_2_y - alpha_2_o_y
@@ -2225,7 +2225,7 @@ def _Z_upru(c, k, x, s, f):
     W_4_t = omega_4_z*omega_4_z
     W_4_xz = omega_2_r1_x*omega_4_z
     W_4_yz = omega_2_r1_y*omega_4_z
-    # (upru-A31) acceleration tensor of link 4
+    # (upru-A31) remainder of the acceleration tensor of link 4
     B_4_o_xy = W_2_xy_2 - alpha_4_o_z
     B_4_o_xz = W_4_xz + alpha_4_o_y
     B_4_o_yx = W_2_xy_2 + alpha_4_o_z

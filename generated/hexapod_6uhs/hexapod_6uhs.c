@@ -1495,7 +1495,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         /* (uhs-A19) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (uhs-A21) acceleration tensor of link 2 */
+        /* (uhs-A21) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_2_o - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
@@ -1517,7 +1517,7 @@ INLINE void dynamics_legs_uhs(const prepared *m, size_t leg, size_t legs, const 
         const real alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3;
         const real alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o;
         const real alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z;
-        /* (uhs-A26) acceleration tensor of link 3 */
+        /* (uhs-A26) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
@@ -2655,7 +2655,7 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (uhs-A19) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (uhs-A21) acceleration tensor of link 2 */
+        /* (uhs-A21) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = qdd_2_o - W_2_xy;
         const real B_2_o_yx = -W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
@@ -2677,7 +2677,7 @@ INLINE void Z_legs_uhs(const prepared *m, size_t leg, size_t legs, const Z_value
         const real alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3;
         const real alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o;
         const real alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z;
-        /* (uhs-A26) acceleration tensor of link 3 */
+        /* (uhs-A26) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;

@@ -1139,7 +1139,7 @@ def _dynamics_uhs(c, k, x, s, f):
     # (uhs-A19) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (uhs-A21) acceleration tensor of link 2
+    # (uhs-A21) remainder of the acceleration tensor of link 2
     B_2_o_xy = qdd_2_o - W_2_xy
     B_2_o_yx = -W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
@@ -1165,7 +1165,7 @@ def _dynamics_uhs(c, k, x, s, f):
     alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3
     alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o
     alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z
-    # (uhs-A26) acceleration tensor of link 3
+    # (uhs-A26) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
@@ -1858,7 +1858,7 @@ def _Z_uhs(c, k, x, s, f):
     # (uhs-A19) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (uhs-A21) acceleration tensor of link 2
+    # (uhs-A21) remainder of the acceleration tensor of link 2
     B_2_o_xy = qdd_2_o - W_2_xy
     B_2_o_yx = -W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
@@ -1884,7 +1884,7 @@ def _Z_uhs(c, k, x, s, f):
     alpha_3_o_x = zeta_3_x + alpha_2_o_y*c_3_t - qdd_2_o*s_3
     alpha_3_o_y = -zeta_3_y - alpha_2_o_y*s_3 - c_3_t*qdd_2_o
     alpha_3_o_z = alpha_2_o_x + inv_uhs_joint3_pitch*rel_o_z
-    # (uhs-A26) acceleration tensor of link 3
+    # (uhs-A26) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z

@@ -2966,7 +2966,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         /* (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = zeta_2_x - alpha_1_o_t;
         const real alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y;
-        /* (rrrrrr-A37) acceleration tensor of link 2 */
+        /* (rrrrrr-A37) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = -W_2_xy - qdd_1_o_t_4;
         const real B_2_o_yx = qdd_1_o_t_4 - W_2_xy;
         const real B_2_o_zx = -alpha_2_o_y - zeta_2_y;
@@ -2979,7 +2979,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3;
         const real alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3;
         const real alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4;
-        /* (rrrrrr-A41) acceleration tensor of link 3 */
+        /* (rrrrrr-A41) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
@@ -3010,7 +3010,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t;
         const real alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t;
         const real alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6;
-        /* (rrrrrr-A45) acceleration tensor of link 4 */
+        /* (rrrrrr-A45) remainder of the acceleration tensor of link 4 */
         const real B_4_o_xy = W_4_xy - alpha_4_o_z;
         const real B_4_o_xz = W_4_xz + alpha_4_o_y;
         const real B_4_o_yx = W_4_xy + alpha_4_o_z;
@@ -3036,7 +3036,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real alpha_5_o_z = alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 +
             qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21 + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25
             - qdd_1_o_t_6*w_1_t_18);
-        /* (rrrrrr-A51) acceleration tensor of link 5 */
+        /* (rrrrrr-A51) remainder of the acceleration tensor of link 5 */
         const real B_5_o_xy = W_5_xy - alpha_5_o_z;
         const real B_5_o_xz = W_5_xz + alpha_5_o_y;
         const real B_5_o_yx = W_5_xy + alpha_5_o_z;
@@ -5287,7 +5287,7 @@ INLINE void Z_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         /* (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = zeta_2_x - alpha_1_o_t;
         const real alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y;
-        /* (rrrrrr-A37) acceleration tensor of link 2 */
+        /* (rrrrrr-A37) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = -W_2_xy - qdd_1_o_t_4;
         const real B_2_o_yx = qdd_1_o_t_4 - W_2_xy;
         const real B_2_o_zx = -alpha_2_o_y - zeta_2_y;
@@ -5300,7 +5300,7 @@ INLINE void Z_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3;
         const real alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3;
         const real alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4;
-        /* (rrrrrr-A41) acceleration tensor of link 3 */
+        /* (rrrrrr-A41) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
@@ -5331,7 +5331,7 @@ INLINE void Z_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t;
         const real alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t;
         const real alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6;
-        /* (rrrrrr-A45) acceleration tensor of link 4 */
+        /* (rrrrrr-A45) remainder of the acceleration tensor of link 4 */
         const real B_4_o_xy = W_4_xy - alpha_4_o_z;
         const real B_4_o_xz = W_4_xz + alpha_4_o_y;
         const real B_4_o_yx = W_4_xy + alpha_4_o_z;
@@ -5357,7 +5357,7 @@ INLINE void Z_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real alpha_5_o_z = alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 +
             qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21 + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25
             - qdd_1_o_t_6*w_1_t_18);
-        /* (rrrrrr-A51) acceleration tensor of link 5 */
+        /* (rrrrrr-A51) remainder of the acceleration tensor of link 5 */
         const real B_5_o_xy = W_5_xy - alpha_5_o_z;
         const real B_5_o_xz = W_5_xz + alpha_5_o_y;
         const real B_5_o_yx = W_5_xy + alpha_5_o_z;

@@ -152,29 +152,30 @@ extern const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ];
    model is all NaN. */
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model);
 
-/* Inertia matrix M. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig. In: X (NQ), q0 (NJ, or NULL).
-   Out: M (NV x NV). */
+/* Inertia matrix M. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart. In: X
+   (NQ), q0 (NJ, or NULL). Out: M (NV x NV). */
 int hexapod_6x6r_M(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, hexapod_6x6r_real *M);
 size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *M, int *status);
 
-/* Velocity and gravity terms Z. 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig. In: X (NQ), q0 (NJ,
-   or NULL), V (NV). Out: Z (NV). */
+/* Velocity and gravity terms Z. 5337 mul, 3972 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+   apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: Z (NV). */
 int hexapod_6x6r_Z(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z);
 size_t hexapod_6x6r_Z_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *Z, int *status);
 
-/* Force transformation H: actuators to task space. 2190 mul, 1272 add, 30 div, 30 sqrt, 60 trig.
-   In: X (NQ), q0 (NJ, or NULL). Out: H (NV x NU). */
+/* Force transformation H: actuators to task space. 2190 mul, 1272 add, 30 div, 30 sqrt, 60 trig;
+   the iteration of q apart. In: X (NQ), q0 (NJ, or NULL). Out: H (NV x NU). */
 int hexapod_6x6r_H(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, hexapod_6x6r_real *H);
 size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *H, int *status);
 
-/* M, Z and H together, sharing the work. 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig. In: X
-   (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x NU). */
+/* M, Z and H together, sharing the work. 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig; the
+   iteration of q apart. In: X (NQ), q0 (NJ, or NULL), V (NV). Out: M (NV x NV), Z (NV), H (NV x
+   NU). */
 int hexapod_6x6r_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *M, hexapod_6x6r_real *Z,
     hexapod_6x6r_real *H);
@@ -182,23 +183,24 @@ size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, co
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status);
 
-/* Displacements q of all joints, on the assembly branch of home. 0 mul, 0 add, 0 div, 0 sqrt, 0
-   trig. In: X (NQ), q0 (NJ, or NULL). Out: q (NJ). */
+/* Displacements q of all joints, on the assembly branch of home; iterated ones: the closure next
+   to q0. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig; the iteration of q apart. In: X (NQ), q0 (NJ, or
+   NULL). Out: q (NJ). */
 int hexapod_6x6r_inverse_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *q);
 size_t hexapod_6x6r_inverse_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *q, int *status);
 
-/* Rates of all joints. 2304 mul, 1392 add, 30 div, 30 sqrt, 60 trig. In: X (NQ), q0 (NJ, or
-   NULL), V (NV). Out: rates (NJ). */
+/* Rates of all joints. 2304 mul, 1392 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart.
+   In: X (NQ), q0 (NJ, or NULL), V (NV). Out: rates (NJ). */
 int hexapod_6x6r_joint_rates(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, hexapod_6x6r_real *rates);
 size_t hexapod_6x6r_joint_rates_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *rates, int *status);
 
-/* Accelerations of all joints. 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig. In: X (NQ), q0 (NJ,
-   or NULL), V (NV), A (NV). Out: accelerations (NJ). */
+/* Accelerations of all joints. 3630 mul, 2382 add, 30 div, 30 sqrt, 60 trig; the iteration of q
+   apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV). Out: accelerations (NJ). */
 int hexapod_6x6r_joint_accelerations(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
     hexapod_6x6r_real *accelerations);
@@ -207,8 +209,8 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
     hexapod_6x6r_real *A, hexapod_6x6r_real *accelerations, int *status);
 
 /* Actuator forces tau for the acceleration A, by Eq. 3. 5649 mul, 4221 add, 30 div, 30 sqrt, 60
-   trig; the solution of the linear equations apart. In: X (NQ), q0 (NJ, or NULL), V (NV), A (NV),
-   wrench (NW, or NULL). Out: tau (NU). */
+   trig; the solution of the linear equations apart; the iteration of q apart. In: X (NQ), q0 (NJ,
+   or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: tau (NU). */
 int hexapod_6x6r_inverse_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
     hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau);
@@ -217,8 +219,8 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *tau, int *status);
 
 /* Acceleration A under the actuator forces tau and the wrench. 10749 mul, 8193 add, 30 div, 30
-   sqrt, 60 trig; the solution of the linear equations apart. In: X (NQ), q0 (NJ, or NULL), V
-   (NV), tau (NU), wrench (NW, or NULL). Out: A (NV). */
+   sqrt, 60 trig; the solution of the linear equations apart; the iteration of q apart. In: X
+   (NQ), q0 (NJ, or NULL), V (NV), tau (NU), wrench (NW, or NULL). Out: A (NV). */
 int hexapod_6x6r_forward_dynamics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *tau, const
     hexapod_6x6r_real *wrench, hexapod_6x6r_real *A);
@@ -236,8 +238,8 @@ size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model,
     hexapod_6x6r_real *A, hexapod_6x6r_real *completed, int *status);
 
 /* Force, then moment, of each leg on the platform at its platform joint, base axes. 5502 mul,
-   4050 add, 30 div, 30 sqrt, 60 trig; inverse dynamics apart. In: X (NQ), q0 (NJ, or NULL), V
-   (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 6). */
+   4050 add, 30 div, 30 sqrt, 60 trig; inverse dynamics apart; the iteration of q apart. In: X
+   (NQ), q0 (NJ, or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: forces (6 x 6). */
 int hexapod_6x6r_leg_reactions(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
     hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
     hexapod_6x6r_real *wrench, hexapod_6x6r_real *forces);

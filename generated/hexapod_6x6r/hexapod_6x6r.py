@@ -2354,7 +2354,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = zeta_2_x - alpha_1_o_t
     alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
-    # (rrrrrr-A37) acceleration tensor of link 2
+    # (rrrrrr-A37) remainder of the acceleration tensor of link 2
     B_2_o_xy = -W_2_xy - qdd_1_o_t_4
     B_2_o_yx = qdd_1_o_t_4 - W_2_xy
     B_2_o_zx = -alpha_2_o_y - zeta_2_y
@@ -2367,7 +2367,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
     alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
-    # (rrrrrr-A41) acceleration tensor of link 3
+    # (rrrrrr-A41) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
@@ -2397,7 +2397,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
     alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
     alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
-    # (rrrrrr-A45) acceleration tensor of link 4
+    # (rrrrrr-A45) remainder of the acceleration tensor of link 4
     B_4_o_xy = W_4_xy - alpha_4_o_z
     B_4_o_xz = W_4_xz + alpha_4_o_y
     B_4_o_yx = W_4_xy + alpha_4_o_z
@@ -2428,7 +2428,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21
         + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
     )
-    # (rrrrrr-A51) acceleration tensor of link 5
+    # (rrrrrr-A51) remainder of the acceleration tensor of link 5
     B_5_o_xy = W_5_xy - alpha_5_o_z
     B_5_o_xz = W_5_xz + alpha_5_o_y
     B_5_o_yx = W_5_xy + alpha_5_o_z
@@ -4415,7 +4415,7 @@ def _Z_rrrrrr(c, k, x, s, f):
     # (rrrrrr-A35) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = zeta_2_x - alpha_1_o_t
     alpha_2_o_y = alpha_1_o_t_2 + zeta_2_y
-    # (rrrrrr-A37) acceleration tensor of link 2
+    # (rrrrrr-A37) remainder of the acceleration tensor of link 2
     B_2_o_xy = -W_2_xy - qdd_1_o_t_4
     B_2_o_yx = qdd_1_o_t_4 - W_2_xy
     B_2_o_zx = -alpha_2_o_y - zeta_2_y
@@ -4428,7 +4428,7 @@ def _Z_rrrrrr(c, k, x, s, f):
     alpha_3_o_x = zeta_3_x + alpha_2_o_x*c_3 + alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_y*c_3 - zeta_3_y - alpha_2_o_x*s_3
     alpha_3_o_z = qdd_1_o_t_3 + qdd_1_o_t_4
-    # (rrrrrr-A41) acceleration tensor of link 3
+    # (rrrrrr-A41) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
@@ -4458,7 +4458,7 @@ def _Z_rrrrrr(c, k, x, s, f):
     alpha_4_o_x = zeta_4_x + alpha_3_o_z*s_4 - alpha_3_o_y*c_4_t
     alpha_4_o_y = -zeta_4_y - alpha_3_o_y*s_4 - alpha_3_o_z*c_4_t
     alpha_4_o_z = alpha_3_o_x + qdd_1_o_t_6
-    # (rrrrrr-A45) acceleration tensor of link 4
+    # (rrrrrr-A45) remainder of the acceleration tensor of link 4
     B_4_o_xy = W_4_xy - alpha_4_o_z
     B_4_o_xz = W_4_xz + alpha_4_o_y
     B_4_o_yx = W_4_xy + alpha_4_o_z
@@ -4489,7 +4489,7 @@ def _Z_rrrrrr(c, k, x, s, f):
     alpha_4_o_x + inv_w_1_t_69*(qdd_1_o_t_2*w_1_t_17 + qdd_1_o_t_3*w_1_t_28 + qdd_1_o_t_5*w_1_t_21
         + rel_o_y*w_1_t_16 - qdd_1_o_t_4*w_1_t_25 - qdd_1_o_t_6*w_1_t_18)
     )
-    # (rrrrrr-A51) acceleration tensor of link 5
+    # (rrrrrr-A51) remainder of the acceleration tensor of link 5
     B_5_o_xy = W_5_xy - alpha_5_o_z
     B_5_o_xz = W_5_xz + alpha_5_o_y
     B_5_o_yx = W_5_xy + alpha_5_o_z
@@ -9067,7 +9067,11 @@ def null_space(X, p=None, q0=None):
 
 
 def inverse_kinematics(X, p=None, q0=None):
-    """Displacements q (..., NJ) of all joints at X, on the assembly branch of home."""
+    """Displacements q (..., NJ) of all joints at X.
+
+    Where there is no closed form they are iterated from q0 (default: home) to the closure next to
+    it, NaN if Newton does not converge; the others are on the assembly branch of home.
+    """
     return _evaluate(_INVERSE_KINEMATICS, p, q0, X=_vector("inverse_kinematics", "X", X, NQ))[0]
 
 

@@ -1362,7 +1362,7 @@ INLINE void dynamics_legs_rprs(const prepared *m, size_t leg, size_t legs, const
         /* (rprs-A20) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_1_o_t + zeta_3_x;
         const real alpha_3_o_y = zeta_3_y - alpha_1_o_t_2;
-        /* (rprs-A22) acceleration tensor of link 3 */
+        /* (rprs-A22) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = -alpha_3_o_y - zeta_3_y;
@@ -2463,7 +2463,7 @@ INLINE void Z_legs_rprs(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (rprs-A20) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = alpha_1_o_t + zeta_3_x;
         const real alpha_3_o_y = zeta_3_y - alpha_1_o_t_2;
-        /* (rprs-A22) acceleration tensor of link 3 */
+        /* (rprs-A22) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = qdd_3_o - W_3_xy;
         const real B_3_o_yx = -W_3_xy - qdd_3_o;
         const real B_3_o_zx = -alpha_3_o_y - zeta_3_y;

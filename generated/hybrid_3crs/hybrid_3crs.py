@@ -1025,7 +1025,7 @@ def _dynamics_rprs(c, k, x, s, f):
     # (rprs-A20) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_1_o_t + zeta_3_x
     alpha_3_o_y = zeta_3_y - alpha_1_o_t_2
-    # (rprs-A22) acceleration tensor of link 3
+    # (rprs-A22) remainder of the acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = -alpha_3_o_y - zeta_3_y
@@ -1697,7 +1697,7 @@ def _Z_rprs(c, k, x, s, f):
     # (rprs-A20) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = alpha_1_o_t + zeta_3_x
     alpha_3_o_y = zeta_3_y - alpha_1_o_t_2
-    # (rprs-A22) acceleration tensor of link 3
+    # (rprs-A22) remainder of the acceleration tensor of link 3
     B_3_o_xy = qdd_3_o - W_3_xy
     B_3_o_yx = -W_3_xy - qdd_3_o
     B_3_o_zx = -alpha_3_o_y - zeta_3_y

@@ -1543,7 +1543,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = zeta_2_x - alpha_1_o_t;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (rrrs-A23) acceleration tensor of link 2 */
+        /* (rrrs-A23) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = W_2_xy + qdd_2_o;
         const real B_2_o_yx = W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
@@ -1567,7 +1567,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y;
         const real alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) -
             qdd_2_o;
-        /* (rrrs-A28) acceleration tensor of link 3 */
+        /* (rrrs-A28) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;
@@ -2778,7 +2778,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = zeta_2_x - alpha_1_o_t;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (rrrs-A23) acceleration tensor of link 2 */
+        /* (rrrs-A23) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = W_2_xy + qdd_2_o;
         const real B_2_o_yx = W_2_xy - qdd_2_o;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
@@ -2802,7 +2802,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y;
         const real alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) -
             qdd_2_o;
-        /* (rrrs-A28) acceleration tensor of link 3 */
+        /* (rrrs-A28) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_3_o_z;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_3_o_z;

@@ -1195,7 +1195,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = zeta_2_x - alpha_1_o_t
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrs-A23) acceleration tensor of link 2
+    # (rrrs-A23) remainder of the acceleration tensor of link 2
     B_2_o_xy = W_2_xy + qdd_2_o
     B_2_o_yx = W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
@@ -1221,7 +1221,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
     alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-    # (rrrs-A28) acceleration tensor of link 3
+    # (rrrs-A28) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z
@@ -1981,7 +1981,7 @@ def _Z_rrrs(c, k, x, s, f):
     # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = zeta_2_x - alpha_1_o_t
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (rrrs-A23) acceleration tensor of link 2
+    # (rrrs-A23) remainder of the acceleration tensor of link 2
     B_2_o_xy = W_2_xy + qdd_2_o
     B_2_o_yx = W_2_xy - qdd_2_o
     B_2_o_zx = zeta_2_y - alpha_2_o_y
@@ -2007,7 +2007,7 @@ def _Z_rrrs(c, k, x, s, f):
     alpha_3_o_x = alpha_2_o_x*c_3 + omega_2_r0_y*qd_3 - alpha_2_o_y*s_3
     alpha_3_o_y = alpha_2_o_x*s_3 + alpha_2_o_y*c_3 - zeta_3_y
     alpha_3_o_z = inv_rrrs_platform_joint_offset_x*(rel_o_y + qdd_2_o*r_2_r0_x) - qdd_2_o
-    # (rrrs-A28) acceleration tensor of link 3
+    # (rrrs-A28) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_3_o_z
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_3_o_z

@@ -2105,7 +2105,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x;
         const real alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y;
-        /* (rrrrs-A29) acceleration tensor of link 2 */
+        /* (rrrrs-A29) remainder of the acceleration tensor of link 2 */
         const real B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y;
         const real B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x;
         /* (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3 */
@@ -2129,7 +2129,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             zeta_3_rrrrs_x;
         const real alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs -
             alpha_2_rrrrs_o_x*s_3_rrrrs;
-        /* (rrrrs-A33) acceleration tensor of link 3 */
+        /* (rrrrs-A33) remainder of the acceleration tensor of link 3 */
         const real B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o;
         const real B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y;
         const real B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o;
@@ -2162,7 +2162,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
             zeta_4_rrrrs_y;
         const real alpha_4_rrrrs_o_z = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y +
             qdd_3_rrrrs_o*r_3_rrrrs_r0_x) - qdd_3_rrrrs_o;
-        /* (rrrrs-A38) acceleration tensor of link 4 */
+        /* (rrrrs-A38) remainder of the acceleration tensor of link 4 */
         const real B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z;
         const real B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y;
         const real B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z;
@@ -2813,7 +2813,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t;
         const real alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y;
-        /* (rrrs-A23) acceleration tensor of link 2 */
+        /* (rrrs-A23) remainder of the acceleration tensor of link 2 */
         const real B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o;
         const real B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o;
         const real B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y;
@@ -2841,7 +2841,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             zeta_3_rrrs_y;
         const real alpha_3_rrrs_o_z = inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y +
             qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o;
-        /* (rrrs-A28) acceleration tensor of link 3 */
+        /* (rrrs-A28) remainder of the acceleration tensor of link 3 */
         const real B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z;
         const real B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y;
         const real B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z;
@@ -4728,7 +4728,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x;
         const real alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y;
-        /* (rrrrs-A29) acceleration tensor of link 2 */
+        /* (rrrrs-A29) remainder of the acceleration tensor of link 2 */
         const real B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y;
         const real B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x;
         /* (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3 */
@@ -4752,7 +4752,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             zeta_3_rrrrs_x;
         const real alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs -
             alpha_2_rrrrs_o_x*s_3_rrrrs;
-        /* (rrrrs-A33) acceleration tensor of link 3 */
+        /* (rrrrs-A33) remainder of the acceleration tensor of link 3 */
         const real B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o;
         const real B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y;
         const real B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o;
@@ -4785,7 +4785,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
             zeta_4_rrrrs_y;
         const real alpha_4_rrrrs_o_z = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y +
             qdd_3_rrrrs_o*r_3_rrrrs_r0_x) - qdd_3_rrrrs_o;
-        /* (rrrrs-A38) acceleration tensor of link 4 */
+        /* (rrrrs-A38) remainder of the acceleration tensor of link 4 */
         const real B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z;
         const real B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y;
         const real B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z;
@@ -5174,7 +5174,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t;
         const real alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y;
-        /* (rrrs-A23) acceleration tensor of link 2 */
+        /* (rrrs-A23) remainder of the acceleration tensor of link 2 */
         const real B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o;
         const real B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o;
         const real B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y;
@@ -5202,7 +5202,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
             zeta_3_rrrs_y;
         const real alpha_3_rrrs_o_z = inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y +
             qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o;
-        /* (rrrs-A28) acceleration tensor of link 3 */
+        /* (rrrs-A28) remainder of the acceleration tensor of link 3 */
         const real B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z;
         const real B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y;
         const real B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z;

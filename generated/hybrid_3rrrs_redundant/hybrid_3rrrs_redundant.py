@@ -1756,7 +1756,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x
     alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y
-    # (rrrrs-A29) acceleration tensor of link 2
+    # (rrrrs-A29) remainder of the acceleration tensor of link 2
     B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y
     B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x
     # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
@@ -1775,7 +1775,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_rrrrs_o_x = alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs - zeta_3_rrrrs_x
     alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs - alpha_2_rrrrs_o_x*s_3_rrrrs
-    # (rrrrs-A33) acceleration tensor of link 3
+    # (rrrrs-A33) remainder of the acceleration tensor of link 3
     B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o
     B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y
     B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o
@@ -1811,7 +1811,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y + qdd_3_rrrrs_o*r_3_rrrrs_r0_x) -
         qdd_3_rrrrs_o
     )
-    # (rrrrs-A38) acceleration tensor of link 4
+    # (rrrrs-A38) remainder of the acceleration tensor of link 4
     B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z
     B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y
     B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z
@@ -2354,7 +2354,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t
     alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y
-    # (rrrs-A23) acceleration tensor of link 2
+    # (rrrs-A23) remainder of the acceleration tensor of link 2
     B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o
     B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o
     B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y
@@ -2387,7 +2387,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     alpha_3_rrrs_o_z = (
     inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y + qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o
     )
-    # (rrrs-A28) acceleration tensor of link 3
+    # (rrrs-A28) remainder of the acceleration tensor of link 3
     B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z
     B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y
     B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z
@@ -3660,7 +3660,7 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-A27) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrrs_o_x = alpha_1_rrrrs_o_t - zeta_2_rrrrs_x
     alpha_2_rrrrs_o_y = -alpha_1_rrrrs_o_t_2 - zeta_2_rrrrs_y
-    # (rrrrs-A29) acceleration tensor of link 2
+    # (rrrrs-A29) remainder of the acceleration tensor of link 2
     B_2_rrrrs_o_zx = zeta_2_rrrrs_y - alpha_2_rrrrs_o_y
     B_2_rrrrs_o_zy = alpha_2_rrrrs_o_x - zeta_2_rrrrs_x
     # (rrrrs-A42) remainder without the acceleration in: acceleration of the origin of joint 3
@@ -3679,7 +3679,7 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-A31) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_rrrrs_o_x = alpha_2_rrrrs_o_x*c_3_rrrrs + alpha_2_rrrrs_o_y*s_3_rrrrs - zeta_3_rrrrs_x
     alpha_3_rrrrs_o_y = zeta_3_rrrrs_y + alpha_2_rrrrs_o_y*c_3_rrrrs - alpha_2_rrrrs_o_x*s_3_rrrrs
-    # (rrrrs-A33) acceleration tensor of link 3
+    # (rrrrs-A33) remainder of the acceleration tensor of link 3
     B_3_rrrrs_o_xy = W_3_rrrrs_xy + qdd_3_rrrrs_o
     B_3_rrrrs_o_xz = W_3_rrrrs_xz + alpha_3_rrrrs_o_y
     B_3_rrrrs_o_yx = W_3_rrrrs_xy - qdd_3_rrrrs_o
@@ -3715,7 +3715,7 @@ def _Z_rrrrs(c, k, x, s, f):
     inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_o_y + qdd_3_rrrrs_o*r_3_rrrrs_r0_x) -
         qdd_3_rrrrs_o
     )
-    # (rrrrs-A38) acceleration tensor of link 4
+    # (rrrrs-A38) remainder of the acceleration tensor of link 4
     B_4_rrrrs_o_xy = W_4_rrrrs_xy - alpha_4_rrrrs_o_z
     B_4_rrrrs_o_xz = W_4_rrrrs_xz + alpha_4_rrrrs_o_y
     B_4_rrrrs_o_yx = W_4_rrrrs_xy + alpha_4_rrrrs_o_z
@@ -4071,7 +4071,7 @@ def _Z_rrrs(c, k, x, s, f):
     # (rrrs-A21) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_rrrs_o_x = zeta_2_rrrs_x - alpha_1_rrrs_o_t
     alpha_2_rrrs_o_y = -alpha_1_rrrs_o_t_2 - zeta_2_rrrs_y
-    # (rrrs-A23) acceleration tensor of link 2
+    # (rrrs-A23) remainder of the acceleration tensor of link 2
     B_2_rrrs_o_xy = W_2_rrrs_xy + qdd_2_rrrs_o
     B_2_rrrs_o_yx = W_2_rrrs_xy - qdd_2_rrrs_o
     B_2_rrrs_o_zx = zeta_2_rrrs_y - alpha_2_rrrs_o_y
@@ -4104,7 +4104,7 @@ def _Z_rrrs(c, k, x, s, f):
     alpha_3_rrrs_o_z = (
     inv_rrrs_platform_joint_offset_x*(rel_rrrs_o_y + qdd_2_rrrs_o*r_2_rrrs_r0_x) - qdd_2_rrrs_o
     )
-    # (rrrs-A28) acceleration tensor of link 3
+    # (rrrs-A28) remainder of the acceleration tensor of link 3
     B_3_rrrs_o_xy = W_3_rrrs_xy - alpha_3_rrrs_o_z
     B_3_rrrs_o_xz = W_3_rrrs_xz + alpha_3_rrrs_o_y
     B_3_rrrs_o_yx = W_3_rrrs_xy + alpha_3_rrrs_o_z

@@ -1338,7 +1338,7 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         /* (ups-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (ups-A20) acceleration tensor of link 2 */
+        /* (ups-A20) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;
@@ -2345,7 +2345,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (ups-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_o_x = alpha_1_o_t - zeta_2_x;
         const real alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y;
-        /* (ups-A20) acceleration tensor of link 2 */
+        /* (ups-A20) remainder of the acceleration tensor of link 2 */
         const real B_2_o_xy = -2*W_2_xy - qdd_1_o_t;
         const real B_2_o_zx = zeta_2_y - alpha_2_o_y;
         const real B_2_o_zy = alpha_2_o_x - zeta_2_x;

@@ -981,7 +981,7 @@ def _dynamics_ups(c, k, x, s, f):
     # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (ups-A20) acceleration tensor of link 2
+    # (ups-A20) remainder of the acceleration tensor of link 2
     B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x
@@ -1533,7 +1533,7 @@ def _Z_ups(c, k, x, s, f):
     # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (ups-A20) acceleration tensor of link 2
+    # (ups-A20) remainder of the acceleration tensor of link 2
     B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x

@@ -1585,7 +1585,7 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         /* (ups-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_ups_o_x = alpha_1_ups_o_t - zeta_2_ups_x;
         const real alpha_2_ups_o_y = -alpha_1_ups_o_t_2 - zeta_2_ups_y;
-        /* (ups-A20) acceleration tensor of link 2 */
+        /* (ups-A20) remainder of the acceleration tensor of link 2 */
         const real B_2_ups_o_xy = -2*W_2_ups_xy - qdd_1_ups_o_t;
         const real B_2_ups_o_zx = zeta_2_ups_y - alpha_2_ups_o_y;
         const real B_2_ups_o_zy = alpha_2_ups_o_x - zeta_2_ups_x;
@@ -1935,7 +1935,7 @@ INLINE void dynamics_legs_ups2(const prepared *m, size_t leg, size_t legs, const
         /* (ups2-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_ups2_o_x = alpha_1_ups2_o_t - zeta_2_ups2_x;
         const real alpha_2_ups2_o_y = -alpha_1_ups2_o_t_2 - zeta_2_ups2_y;
-        /* (ups2-A20) acceleration tensor of link 2 */
+        /* (ups2-A20) remainder of the acceleration tensor of link 2 */
         const real B_2_ups2_o_xy = -2*W_2_ups2_xy - qdd_1_ups2_o_t;
         const real B_2_ups2_o_zx = zeta_2_ups2_y - alpha_2_ups2_o_y;
         const real B_2_ups2_o_zy = alpha_2_ups2_o_x - zeta_2_ups2_x;
@@ -3278,7 +3278,7 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
         /* (ups-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_ups_o_x = alpha_1_ups_o_t - zeta_2_ups_x;
         const real alpha_2_ups_o_y = -alpha_1_ups_o_t_2 - zeta_2_ups_y;
-        /* (ups-A20) acceleration tensor of link 2 */
+        /* (ups-A20) remainder of the acceleration tensor of link 2 */
         const real B_2_ups_o_xy = -2*W_2_ups_xy - qdd_1_ups_o_t;
         const real B_2_ups_o_zx = zeta_2_ups_y - alpha_2_ups_o_y;
         const real B_2_ups_o_zy = alpha_2_ups_o_x - zeta_2_ups_x;
@@ -3517,7 +3517,7 @@ INLINE void Z_legs_ups2(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (ups2-A18) remainder without the acceleration in: angular acceleration of link 2 */
         const real alpha_2_ups2_o_x = alpha_1_ups2_o_t - zeta_2_ups2_x;
         const real alpha_2_ups2_o_y = -alpha_1_ups2_o_t_2 - zeta_2_ups2_y;
-        /* (ups2-A20) acceleration tensor of link 2 */
+        /* (ups2-A20) remainder of the acceleration tensor of link 2 */
         const real B_2_ups2_o_xy = -2*W_2_ups2_xy - qdd_1_ups2_o_t;
         const real B_2_ups2_o_zx = zeta_2_ups2_y - alpha_2_ups2_o_y;
         const real B_2_ups2_o_zy = alpha_2_ups2_o_x - zeta_2_ups2_x;

@@ -1231,7 +1231,7 @@ def _dynamics_ups(c, k, x, s, f):
     # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_ups_o_x = alpha_1_ups_o_t - zeta_2_ups_x
     alpha_2_ups_o_y = -alpha_1_ups_o_t_2 - zeta_2_ups_y
-    # (ups-A20) acceleration tensor of link 2
+    # (ups-A20) remainder of the acceleration tensor of link 2
     B_2_ups_o_xy = -2.0*W_2_ups_xy - qdd_1_ups_o_t
     B_2_ups_o_zx = zeta_2_ups_y - alpha_2_ups_o_y
     B_2_ups_o_zy = alpha_2_ups_o_x - zeta_2_ups_x
@@ -1507,7 +1507,7 @@ def _dynamics_ups2(c, k, x, s, f):
     # (ups2-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_ups2_o_x = alpha_1_ups2_o_t - zeta_2_ups2_x
     alpha_2_ups2_o_y = -alpha_1_ups2_o_t_2 - zeta_2_ups2_y
-    # (ups2-A20) acceleration tensor of link 2
+    # (ups2-A20) remainder of the acceleration tensor of link 2
     B_2_ups2_o_xy = -2.0*W_2_ups2_xy - qdd_1_ups2_o_t
     B_2_ups2_o_zx = zeta_2_ups2_y - alpha_2_ups2_o_y
     B_2_ups2_o_zy = alpha_2_ups2_o_x - zeta_2_ups2_x
@@ -2257,7 +2257,7 @@ def _Z_ups(c, k, x, s, f):
     # (ups-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_ups_o_x = alpha_1_ups_o_t - zeta_2_ups_x
     alpha_2_ups_o_y = -alpha_1_ups_o_t_2 - zeta_2_ups_y
-    # (ups-A20) acceleration tensor of link 2
+    # (ups-A20) remainder of the acceleration tensor of link 2
     B_2_ups_o_xy = -2.0*W_2_ups_xy - qdd_1_ups_o_t
     B_2_ups_o_zx = zeta_2_ups_y - alpha_2_ups_o_y
     B_2_ups_o_zy = alpha_2_ups_o_x - zeta_2_ups_x
@@ -2450,7 +2450,7 @@ def _Z_ups2(c, k, x, s, f):
     # (ups2-A18) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_ups2_o_x = alpha_1_ups2_o_t - zeta_2_ups2_x
     alpha_2_ups2_o_y = -alpha_1_ups2_o_t_2 - zeta_2_ups2_y
-    # (ups2-A20) acceleration tensor of link 2
+    # (ups2-A20) remainder of the acceleration tensor of link 2
     B_2_ups2_o_xy = -2.0*W_2_ups2_xy - qdd_1_ups2_o_t
     B_2_ups2_o_zx = zeta_2_ups2_y - alpha_2_ups2_o_y
     B_2_ups2_o_zy = alpha_2_ups2_o_x - zeta_2_ups2_x

@@ -1404,7 +1404,7 @@ INLINE void dynamics_legs_urps(const prepared *m, size_t w, size_t leg, size_t l
         /* (urps-A28) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3;
         const real alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3;
-        /* (urps-A30) acceleration tensor of link 3 */
+        /* (urps-A30) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_2_o_x;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_2_o_x;
@@ -2597,7 +2597,7 @@ INLINE void Z_legs_urps(const prepared *m, size_t w, size_t leg, size_t legs, co
         /* (urps-A28) remainder without the acceleration in: angular acceleration of link 3 */
         const real alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3;
         const real alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3;
-        /* (urps-A30) acceleration tensor of link 3 */
+        /* (urps-A30) remainder of the acceleration tensor of link 3 */
         const real B_3_o_xy = W_3_xy - alpha_2_o_x;
         const real B_3_o_xz = W_3_xz + alpha_3_o_y;
         const real B_3_o_yx = W_3_xy + alpha_2_o_x;

@@ -1061,7 +1061,7 @@ def _dynamics_urps(c, k, x, s, f):
     # (urps-A28) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3
     alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3
-    # (urps-A30) acceleration tensor of link 3
+    # (urps-A30) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_2_o_x
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_2_o_x
@@ -1768,7 +1768,7 @@ def _Z_urps(c, k, x, s, f):
     # (urps-A28) remainder without the acceleration in: angular acceleration of link 3
     alpha_3_o_x = zeta_3_x - alpha_2_o_y*c_3_t - qdd_2_o*s_3
     alpha_3_o_y = c_3_t*qdd_2_o - zeta_3_y - alpha_2_o_y*s_3
-    # (urps-A30) acceleration tensor of link 3
+    # (urps-A30) remainder of the acceleration tensor of link 3
     B_3_o_xy = W_3_xy - alpha_2_o_x
     B_3_o_xz = W_3_xz + alpha_3_o_y
     B_3_o_yx = W_3_xy + alpha_2_o_x

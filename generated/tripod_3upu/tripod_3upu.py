@@ -1184,7 +1184,7 @@ def _dynamics_upu(c, k, x, s, f):
     # (upu-A24) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (upu-A26) acceleration tensor of link 2
+    # (upu-A26) remainder of the acceleration tensor of link 2
     B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t_2
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x
@@ -2081,7 +2081,7 @@ def _Z_upu(c, k, x, s, f):
     # (upu-A24) remainder without the acceleration in: angular acceleration of link 2
     alpha_2_o_x = alpha_1_o_t - zeta_2_x
     alpha_2_o_y = -alpha_1_o_t_2 - zeta_2_y
-    # (upu-A26) acceleration tensor of link 2
+    # (upu-A26) remainder of the acceleration tensor of link 2
     B_2_o_xy = -2.0*W_2_xy - qdd_1_o_t_2
     B_2_o_zx = zeta_2_y - alpha_2_o_y
     B_2_o_zy = alpha_2_o_x - zeta_2_x

@@ -97,8 +97,9 @@ def _program_functions(bundle: Bundle, d: Described) -> list[Api]:
         ("constraint_bias", "The vector bias in Hk^T A + bias = 0.", (X, V), made("bias", "NC"),
          "constraint_bias"),
         ("inverse_kinematics",
-         "Displacements q of all joints, on the assembly branch of home.", (X,), made("q", "NJ"),
-         "q"),
+         "Displacements q of all joints, on the assembly branch of home"
+         + ("; iterated ones: the closure next to q0." if d.is_numeric else "."), (X,),
+         made("q", "NJ"), "q"),
         ("joint_rates", "Rates of all joints.", (X, V), made("rates", "NJ"), "qd"),
         ("joint_accelerations", "Accelerations of all joints.", (X, V, A),
          made("accelerations", "NJ"), "qdd"),
@@ -255,6 +256,7 @@ def _counted(bundle: Bundle, api: Api) -> Api:
     if name not in bundle.program.functions:
         return api
     n = count_function(bundle.program.functions[name], bundle.leg_counts)
+    iterated = api.has_model and any(i.name == "q0" for i in api.inputs)
     also = {
         "required": "; the solution of the linear equations apart",
         "dynamics": ""
@@ -265,5 +267,5 @@ def _counted(bundle: Bundle, api: Api) -> Api:
     return replace(
         api,
         meaning=f"{api.meaning}  {n.mul} mul, {n.add} add, {n.div} div, {n.sqrt} sqrt, "
-        f"{n.trig} trig{also}.",
+        f"{n.trig} trig{also}{'; the iteration of q apart' if iterated else ''}.",
     )

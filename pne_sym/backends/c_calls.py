@@ -6,7 +6,7 @@ from math import prod
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_api import Api
-from pne_sym.backends.c_text import Routine, comment, indented, listing
+from pne_sym.backends.c_text import Routine, comment, indented, listing, parameter_name
 
 
 class ApiWriter:
@@ -116,6 +116,8 @@ class ApiWriter:
             body.append("close_loops(m, w, X, q0, joints, t);")
         elif len(taken) < len(a.inputs):
             body.append("(void)q0;")
+        if "q" not in function.inputs and "m" not in map(parameter_name, run.parameters):
+            body.append("(void)m;")
         body.append(run.call_with({n: f"{n}_of" for n in sizes}))
         body += [f"check({sizes[n]}, w, {n}_of, t->overflow);" for n in a.arrays]
         body.append("judge(t, w, code);")

@@ -275,6 +275,7 @@ class Coordinates:
         actuators: (leg, joint) of every entry of tau, counted from 0.
         extras: (leg, joint) of the extra coordinates, counted from 0.
         constraints: leg of every entry of lambda.
+        constraint_units: unit of every entry of lambda, N or N m.
         turning: for every entry of q whether whole turns change nothing (not so for a screw).
         home: X and q at home.
         transmits_moments: some leg transmits a moment: leg reactions have six entries.
@@ -293,6 +294,7 @@ class Coordinates:
     turning: tuple[bool, ...]
     home: tuple[tuple[float, ...], tuple[float, ...]]
     transmits_moments: bool = False
+    constraint_units: tuple[str, ...] = ()
 
     @property
     def has_quaternion(self) -> bool:

@@ -223,12 +223,14 @@ class LeftOut:
         amounts: along the moment directions, per unit lambda.
         moment: the moment that they make.
         acts: it does work along some motion of the platform.
+        of_moment: lambda is a moment, not a force.
     """
 
     force: Vector
     amounts: tuple[Any, ...] = ()
     moment: Vector = ZeroVector
     acts: bool = True
+    of_moment: bool = False
 
 
 @dataclass(frozen=True)
@@ -381,7 +383,7 @@ class _WrenchWriter:
             for i, amount in enumerate(amounts, 1)
         )
         if not moments:
-            return LeftOut(unit, acts=auxiliary.acts)
+            return LeftOut(unit, acts=auxiliary.acts, of_moment=not of_force)
         moment = self.book.define(
             self.g.name(f"mu_c{number}"),
             _moment(moments, self.directions),
@@ -392,7 +394,7 @@ class _WrenchWriter:
             body=self.frame,
             reference="Eq. 35",
         )
-        return LeftOut(unit, moments, moment, auxiliary.acts)
+        return LeftOut(unit, moments, moment, auxiliary.acts, not of_force)
 
     def _size(self, number: int, auxiliary: Auxiliary, force: Any, amounts: tuple[Any, ...]) -> Any:
         """Size of the force, or of the moment: singular where it vanishes."""

@@ -143,7 +143,7 @@ def _per_unit_moment(
         Law.GEOMETRY,
         reference="Eq. 35",
     )
-    return LeftOut(direction, (amount,), amount * n)
+    return LeftOut(direction, (amount,), amount * n, of_moment=True)
 
 
 def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:

@@ -57,7 +57,10 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         for j, joint in enumerate(leg.joints)
     ]
     constraints = sorted(
-        index for leg in legs for index in leg.g.leg_type.indices for _ in leg.motion.left_out
+        (index, k, "N m" if wrench.of_moment else "N")
+        for leg in legs
+        for index in leg.g.leg_type.indices
+        for k, wrench in enumerate(leg.motion.left_out)
     )
     return Coordinates(
         space=manipulator.space.value,
@@ -69,10 +72,11 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         joints=tuple((i, j) for i, j, _ in joints),
         actuators=tuple((i, j) for i, j, joint in joints if joint.actuated),
         extras=tuple((i, j) for i, j, joint in joints if joint.extra),
-        constraints=tuple(constraints),
+        constraints=tuple(index for index, *_ in constraints),
         turning=tuple(joint.kind is JointKind.REVOLUTE for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
         transmits_moments=any(leg.motion.n for leg in legs),
+        constraint_units=tuple(unit for *_, unit in constraints),
     )
 
 
@@ -85,10 +89,12 @@ def _derive_leg(
     suffix: str,
 ) -> tuple[Leg, MotionWriter]:
     prefix, title = leg_type.name, leg_type.architecture
-    book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", _GEOMETRY, prefix)
+    book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", "", prefix)
     g = build_geometry(book, leg_type, suffix, space.planar)
     g.pure_moment = force_vanishes(manipulator, g)
     bodies = introduce_bodies(book, g, space.planar)
+    carried = any(body.at_tip for body in bodies)
+    book.retext(_GEOMETRY.format(points=_AT_TIP if carried else "their joints"))
     # Links that all turn together are one body; else composite bodies cost less.
     g.composite = len({body.group for body in bodies}) > 1
     book.chapter(f"{prefix}-K", f"Inverse kinematics of a {title} leg", _INVERSE, prefix)
@@ -96,7 +102,13 @@ def _derive_leg(
     book.leg_types.append(_info(leg_type, inverse, len(g.pairs)))
     kinematics = MotionWriter(book, g, platform, space, inverse)
     motion = kinematics.write(prefix)
-    text = _NEWTON_EULER + (_COMPOSITE if g.composite else "") + (_MOMENTS if g.pairs else "")
+    text = (
+        _NEWTON_EULER
+        + (_CARRIED if carried else _KEPT)
+        + (_RESTRICTED if motion.left_out else "")
+        + (_COMPOSITE if g.composite else "")
+        + (_MOMENTS if g.pairs else "")
+    )
     book.chapter(f"{prefix}-N", f"Newton-Euler of a {title} leg", text, prefix)
     dynamics = DynamicsWriter(book, g, platform, motion, kinematics, bodies).run()
     leg = Leg(g, motion, dynamics)
@@ -279,9 +291,9 @@ def _path(motion: MotionWriter, g: Any, joint: int) -> list[Any]:
 
 _GEOMETRY = (
     "Constant vectors of the leg, each fixed in a link, and the first moments and inertia tensors "
-    "of the links about their reference points: the connection point for the last link, the "
-    "joint for the others. All of this is computed once, when the parameters are set."
+    "of the links about {points}. All of this is computed once, when the parameters are set."
 )
+_AT_TIP = "their reference points: the connection point for the last link, the joint for the others"
 _INVERSE = (
     "The joints are found one after another from the base, each from a quantity that the joints "
     r"beyond it cannot change: the scalar product with a direction fixed in link j. For a joint "
@@ -312,10 +324,22 @@ _MOMENTS = (
 )
 _NEWTON_EULER = (
     r"From the last link to the base; of the equilibrium of the links beyond a joint only the "
-    r"component along the joint's freedom is taken, so that joint reactions never appear. The "
-    r"inertia force $`\mathbf f`$ of the last link (its weight taken off) acts at the connection "
-    r"point like the force $`\mathbf F`$ on the platform; $`\Gamma_j`$ is what everything else "
-    r"needs along joint j. So $`\mathbf v_j\cdot(\mathbf F+\mathbf f)=\tau_j-\Gamma_j`$ for every "
-    r"joint, and the reciprocal vectors solve this: "
+    r"component along the joint's freedom is taken, so that joint reactions never appear. "
+)
+_CARRIED = (
+    r"The inertia force $`\mathbf f`$ of the last link (its weight taken off) acts at the "
+    r"connection point like the force $`\mathbf F`$ on the platform; $`\Gamma_j`$ is what "
+    r"everything else needs along joint j. So "
+    r"$`\mathbf v_j\cdot(\mathbf F+\mathbf f)=\tau_j-\Gamma_j`$ for every joint, and the "
+    r"reciprocal vectors solve this: "
     r"$`\mathbf F=\sum_j\mathbf w_j\,(\tau_j-\Gamma_j)-\mathbf f`$."
+)
+_KEPT = (
+    r"$`\Gamma_j`$ is what the links beyond joint j need along it, so that the force $`\mathbf F`$ "
+    r"on the platform obeys $`\mathbf v_j\cdot\mathbf F=\tau_j-\Gamma_j`$ for every joint; the "
+    r"reciprocal vectors solve this: $`\mathbf F=\sum_j\mathbf w_j\,(\tau_j-\Gamma_j)`$."
+)
+_RESTRICTED = (
+    r" Besides, the leg acts on the platform along what its freedoms leave out; by how much is the "
+    r"multiplier $`\lambda`$, a reaction that only the platform's equations determine."
 )

@@ -695,7 +695,7 @@ class DynamicsWriter:
             "moment of the leg on the platform without actuation",
             Law.REDUCTION,
             unit="N m",
-            coefficient_latex=r"-\mathbf Q'_m",
+            coefficient_latex=r"\mathbf K_m",
             body=self.k.tip_frame(),
             reference="Eq. 3",
         )

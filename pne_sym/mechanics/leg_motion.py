@@ -175,6 +175,13 @@ class LinearWriter:
             book.collect_no_coefficients(name)
         return symbol
 
+    def _unit_of(self, unknown: Any) -> str:
+        """Unit of an acceleration that is collected."""
+        if unknown == self.motion.a_p:
+            return "m/s^2"
+        slides = [y for j, y in self.motion.ydd.items() if not self.g.turns(j)]
+        return "m/s^2" if unknown in slides else "rad/s^2"
+
     def _coefficient(
         self,
         k: int,
@@ -206,9 +213,21 @@ class LinearWriter:
             linear=form if first else None,
             expanded=rhs,
             reference="Sec. 2.3, Eq. 4",
-            unit=f"({unit})/(m/s^2)" if first else "",
+            unit=_PER_ACCELERATION[unit, self._unit_of(unknown)],
         )
 
+
+# Unit of a quantity, and of the acceleration on which it depends -> unit of the coefficient.
+_PER_ACCELERATION = {
+    ("N", "m/s^2"): "kg",
+    ("N", "rad/s^2"): "kg m",
+    ("N m", "m/s^2"): "kg m",
+    ("N m", "rad/s^2"): "kg m^2",
+    ("m/s^2", "m/s^2"): "-",
+    ("m/s^2", "rad/s^2"): "m",
+    ("rad/s^2", "m/s^2"): "rad/m",
+    ("rad/s^2", "rad/s^2"): "-",
+}
 
 # Units of what is reciprocal to the freedom of a joint, by whether the joint turns.
 _FORCE_PART = {True: "1/m", False: "-"}
@@ -271,11 +290,25 @@ class MotionWriter:
         self.book.chapter(
             f"{prefix}-A",
             f"Accelerations of a {leg_type.architecture} leg",
-            _ACCELERATIONS + (_REMAINDERS if self.g.composite else _COLLECTED) + _TENSOR,
+            _ACCELERATIONS
+            + (_REMAINDERS if self.g.composite else _COLLECTED)
+            + self._other_accelerations()
+            + _TENSOR,
             leg_type.name,
         )
         self.acceleration()
         return self.motion
+
+    def _other_accelerations(self) -> str:
+        """Which accelerations are collected besides that of the connection point."""
+        others = [r"the platform's $`\boldsymbol\alpha`$"] * bool(
+            self.g.pairs and self.space.rotates
+        )
+        if any(self.g.is_extra(j) for j in range(1, self.g.count + 1)):
+            others.append(r"those of the extra joints, $`\ddot y_j`$")
+        if not others:
+            return ""
+        return f"What depends on {' and '.join(others)} is collected likewise. "
 
     # ---- positions along the chain -------------------------------------------------
 
@@ -872,7 +905,7 @@ class MotionWriter:
                         g.name(f"B_{j}") + mark,
                         Skew(alpha) + motion.spin[j],
                         rf"\mathbf B{circle}_{{{j}}}",
-                        f"acceleration tensor of link {j}",
+                        f"{'remainder of the ' if mark else ''}acceleration tensor of link {j}",
                         Law.DEFINITION,
                         unit="1/s^2",
                         body=frame,

@@ -52,8 +52,13 @@ class Leg:
 
 
 _LUMPED = (
-    "The mass of each leg's last link, gathered at the connection point, moves with the platform "
+    "The mass of a leg's last link, gathered at the connection point, moves with the platform "
     "and is counted with it; this changes no force that the platform sees."
+)
+_NOT_LUMPED = "The platform's own mass, first moment and inertia tensor, about its origin."
+_KEPT = (
+    " Legs that restrict the platform keep the mass of their last links, so that the multipliers "
+    "are the physical reactions."
 )
 _PLATFORM = (
     "Newton's and Euler's equations of the platform with the legs' forces; moments about the "
@@ -80,8 +85,11 @@ class PlatformWriter:
     def lump(self) -> None:
         """Platform inertia with the gathered masses."""
         book, p = self.book, self.p
+        gathered = any(leg.dynamics.tip_mass != 0 for leg in self.legs)
+        kept = any(leg.motion.left_out for leg in self.legs)
+        text = (_LUMPED if gathered else _NOT_LUMPED) + (_KEPT if kept else "")
         book.chapter(
-            "L", "Platform inertia with the masses gathered at the connection points", _LUMPED
+            "L", "Platform inertia with the masses gathered at the connection points", text
         )
         R = p.centre
 
@@ -550,9 +558,11 @@ class PlatformWriter:
             g.name(f"phi_c{k + 1}"),
             miss,
             rf"\phi_{{{k + 1}}}",
-            "distance by which the leg misses the connection point, along a direction left out",
+            "angle by which the leg misses the platform, about a direction left out"
+            if left_out.of_moment
+            else "distance by which the leg misses the platform, along a direction left out",
             Law.LOOP_CLOSURE,
-            unit="m",
+            unit="-" if left_out.of_moment else "m",
             reference="Eq. 37",
         )
         self._leg_scalar("constraints", leg, gap, places)
@@ -567,7 +577,7 @@ class PlatformWriter:
             rf"\gamma_{{{k + 1}}}",
             "part of the constraint's second derivative that does not hold the acceleration",
             Law.LOOP_CLOSURE,
-            unit="m/s^2",
+            unit="1/s^2" if left_out.of_moment else "m/s^2",
             reference="Eq. 37",
         )
         self._leg_scalar("constraint_bias", leg, bias, places)

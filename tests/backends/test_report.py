@@ -396,9 +396,46 @@ def test_short_formulas_stand_on_one_line() -> None:
     assert display("x", [[Term("y"), Term("z", negative=True)]]) == ("x = y - z",)
 
 
+def test_every_quantity_has_a_unit(name: str) -> None:
+    notation = derived(models.catalogue(name)).derivation.notation
+    assert not [q.name for q in notation.values() if not q.unit]
+
+
+def test_units_of_coefficients_and_of_constraints() -> None:
+    found = derived(models.catalogue("tripod_3upu")).derivation
+    units = {equation.name: found.notation[equation.name].unit for equation in found.equations()}
+    assert units["d_f_3"] == "kg"
+    assert units["d0_f_3"] == "kg m"  # of the platform's angular acceleration
+    assert units["d0_mu_2"] == "kg m^2"
+    assert (units["phi_c1"], units["gamma_c1"]) == ("-", "1/s^2")
+    assert found.coordinates is not None
+    assert found.coordinates.constraint_units == ("N m",) * 3
+    assert "leg by leg (N·m, N·m, N·m)" in document("tripod_3upu")
+    assert "leg by leg (N, N, N)" in document("tripod_3rps")
+
+
+def test_where_the_mass_of_the_last_link_is_counted() -> None:
+    carried, kept = document("stewart"), document("tripod_3rps")
+    assert "is counted with it" in carried
+    assert "keep the mass of their last links" not in carried
+    assert "is counted with it" not in kept
+    assert "keep the mass of their last links" in kept
+    assert "about their joints" in kept
+    assert r"\tau_j-\Gamma_j)-\mathbf f" not in kept
+
+
+def test_iteration_is_told_where_there_is_one() -> None:
+    iterated, closed = (
+        text_of(models.bundle(models.catalogue(name))) for name in ("hexapod_6x6r", "stewart")
+    )
+    for words in ("| `q0` |", "**Not converged**", "a step of the iteration"):
+        assert words in iterated
+        assert words not in closed
+
+
 def test_units() -> None:
     assert unit("kg m^2") == "kg·m²"
-    assert unit("(N m)/(m/s^2)") == "kg·m"
+    assert unit("kg m^2/s") == "kg·m²/s"
     assert unit("-") == unit("") == "1"
 
 

@@ -95,8 +95,23 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
             f"**Singular leg**: a divisor of {_links(singular)} (nearly) zero, measured against "
             "the size of the leg."
         )
+    constrained = bundle.coordinates.sizes["NC"] > 0
+    if any(not info.is_closed for info in bundle.derivation.leg_types):
+        lines.append(
+            "**Not converged**: from the first guess `q0`, Newton's iteration finds no "
+            "displacements that close the loops."
+        )
     lines += [
-        "**Singular drives**: H has no full rank; inverse dynamics needs that, M, Z and H do not.",
+        (
+            f"**Singular drives**: {'[H H_k]' if constrained else 'H'} has no full rank; inverse "
+            "dynamics needs that, M, Z and H do not."
+        ),
+        "**Singular masses**: "
+        + (
+            "the matrix of accelerations and multipliers has no inverse; forward dynamics needs it."
+            if constrained
+            else "M has no inverse; forward dynamics needs it."
+        ),
         (
             "**Invalid**: an entry of the input is not finite, or a quaternion is zero, "
             "or so long that its squared length overflows."
@@ -112,10 +127,16 @@ def _links(ids: list[str]) -> str:
 def counts(bundle: Bundle) -> Table:
     """Operations of every function."""
     rows = [
-        _row(f"`{f.name}`", FUNCTIONS.get(f.name, ""), count_function(f, bundle.leg_counts))
+        _row(f"`{f.name}`", _gives(f.name), count_function(f, bundle.leg_counts))
         for f in bundle.program.functions.values()
     ]
     return table(("Function", "Gives", *_COUNT_HEAD), rows, numbers=len(_COUNT_HEAD))
+
+
+def _gives(name: str) -> str:
+    if name.startswith("closure_"):
+        return "a step of the iteration that precedes the functions of X: gap and its derivative"
+    return FUNCTIONS[name]
 
 
 def parts(bundle: Bundle) -> Table:

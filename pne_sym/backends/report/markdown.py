@@ -41,20 +41,12 @@ def unit(text: str) -> str:
     >>> unit("kg m^2")
     'kg·m²'
     """
-    text = _QUOTIENTS.get(text, text).replace(" ", "·")
+    text = text.replace(" ", "·")
     return (
         text.replace("^2", "²").replace("^3", "³").replace("^4", "⁴")
         if text not in ("", "-")
         else "1"
     )
-
-
-_QUOTIENTS = {  # coefficient of an acceleration: unit of the quantity over m/s^2
-    "(N)/(m/s^2)": "kg",
-    "(N m)/(m/s^2)": "kg m",
-    "(rad/s^2)/(m/s^2)": "rad/m",
-    "(m/s^2)/(m/s^2)": "-",
-}
 
 
 def display(left: str, rows: Sequence[Sequence[Term]]) -> tuple[str, ...]:

@@ -93,8 +93,20 @@ def _order_rows(bundle: Bundle) -> Iterator[tuple[str, str]]:
     yield "`tau`", _per_type(bundle, lambda joint: joint.actuated, _effort) or "none"
     yield "`q`", _per_type(bundle, lambda _: True, _displacement)
     if c.constraints:
-        yield "`lambda`", "reactions along the directions that the legs leave out, leg by leg (N)"
+        units = ", ".join(map(unit, c.constraint_units))
+        yield (
+            "`lambda`",
+            f"reactions along the directions that the legs leave out, leg by leg ({units})",
+        )
     yield "`wrench`", f"{_listed(c.wrench)}: external force and moment on the platform"
+    if any(not info.is_closed for info in bundle.derivation.leg_types):
+        yield (
+            "`q0`",
+            (
+                "first guess of the displacements, as q, where they are iterated; default: home. "
+                "Along a trajectory the last q serves best"
+            ),
+        )
 
 
 def _listed(names: tuple[str, ...]) -> str:

@@ -82,7 +82,10 @@ CONVENTIONS: tuple[str, ...] = (
         "Legs and joints are numbered from 1, joints from the base outwards; link j is moved by "
         "joint j, link 0 is the base."
     ),
-    r"Gravity is an acceleration vector $`\mathbf g`$ that points downwards.",
+    (
+        r"Gravity is an acceleration vector $`\mathbf g`$; it points downwards where the base "
+        "stands upright."
+    ),
     (
         r"An actuator's $`\tau`$ is conjugate to its joint's displacement and acts on the distal "
         "link: a force that extends a prismatic joint, a torque about the axis of a revolute or "
@@ -137,7 +140,7 @@ FUNCTIONS = {
 SPACES = {
     "point": "a point moving in the plane",
     "planar": "a platform moving in the plane",
-    "spatial": "a platform moving freely in space",
+    "spatial": "a platform that moves and turns in space",
     "translational": "a platform that moves in space without turning",
     "spherical": "a platform that turns about a fixed centre",
 }
