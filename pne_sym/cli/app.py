@@ -119,8 +119,8 @@ def generate(
     """Generate models.
 
     DIR/NAME/ gets the derivation (NAME.md), the NumPy code (NAME.py), the C code
-    (NAME.h, NAME.c) and a manifest (NAME.json). A folder that stands there is
-    replaced as a whole.
+    (NAME.h, NAME.c) and a manifest (NAME.json). What was generated there before is
+    replaced as a whole; other files in the folder stay.
     """
     with told(debug=debug):
         writer.check_output(out)

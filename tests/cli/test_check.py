@@ -66,11 +66,16 @@ def test_a_changed_file_is_shown_as_a_unified_diff(out: Path) -> None:
 
 def test_missing_and_stale_files_are_named(out: Path) -> None:
     (out / "stewart/stewart.c").unlink()
-    (out / "stewart/extra.h").write_text("")
+    (out / "stewart/stewart.h").write_text("")
     done = pne_gen("check", "--out", out)
     assert done.returncode == 1
     assert f"missing: {out}/stewart/stewart.c\n" in done.stdout
-    assert f"stale: {out}/stewart/extra.h\n" in done.stdout
+    assert f"stale: {out}/stewart/stewart.h\n" in done.stdout
+
+
+def test_the_user_s_own_files_make_no_difference(out: Path) -> None:
+    (out / "stewart/notes.txt").write_text("mine\n")
+    assert pne_gen("check", "--out", out).returncode == 0
 
 
 def test_a_missing_folder_and_a_missing_output_folder(tmp_path: Path) -> None:
