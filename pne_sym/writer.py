@@ -62,6 +62,7 @@ def write_model(out: Path, name: str, files: Mapping[str, str]) -> Path:
     with readable_errors(folder), _created(out), _locked(out):
         place = _Place(folder)
         place.settle()
+        place.check()
         _refuse_foreign(folder, content.keys())
         is_new = all(path.name.startswith(".") for path in out.iterdir())
         try:
@@ -129,10 +130,19 @@ class _Place:
         Whatever happened before (an error, an interruption, a crash of an
         earlier run), afterwards one whole folder, old or new, is in place.
         """
-        if self.old.exists() and not self.folder.exists():
+        if self.old.is_dir() and not self.folder.exists():
             self.old.rename(self.folder)
         for left_over in (self.new, self.old):
-            shutil.rmtree(left_over, ignore_errors=True)
+            _remove(left_over)
+
+    def check(self) -> None:
+        """Refuse to go on where something left over could not be removed."""
+        for left_over in (self.new, self.old):
+            if left_over.exists() or left_over.is_symlink():
+                raise OutputError(
+                    f"cannot write {self.folder}: {left_over}, left over from an earlier run, "
+                    "cannot be removed; remove it by hand"
+                )
 
 
 def check_names(name: str, files: Mapping[str, str]) -> None:
@@ -213,6 +223,16 @@ def _has_header(path: Path) -> bool:
     with contextlib.suppress(OSError), path.open("rb") as stream:
         return _HEADER.search(stream.read(_HEADER_BYTES)) is not None
     return False
+
+
+def _remove(folder: Path) -> None:
+    """Remove a folder as far as that can be done, its read-only folders too."""
+    if folder.is_symlink():  # what it points to is not ours
+        return
+    for root, _, _ in os.walk(folder):
+        with contextlib.suppress(OSError):
+            Path(root).chmod(0o700)
+    shutil.rmtree(folder, ignore_errors=True)
 
 
 def _write_folder(folder: Path, content: Mapping[str, bytes]) -> None:

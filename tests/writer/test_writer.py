@@ -224,6 +224,33 @@ def test_a_usable_output_path_is_left_alone(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("suffix", ["pne-old", "pne-tmp"])
+def test_what_stands_in_the_way_is_named(
+    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A folder left over from an earlier run that cannot be removed."""
+    write_model(tmp_path, "robot", OLD)
+    left_over = tmp_path / f".robot.{suffix}"
+    left_over.mkdir()
+    (left_over / "file").write_text("")
+    with monkeypatch.context() as patch:
+        patch.setattr(writer.shutil, "rmtree", lambda *_, **__: None)
+        with pytest.raises(OutputError) as refused:
+            write_model(tmp_path, "robot", NEW)
+    assert f"{left_over}, left over from an earlier run, cannot be removed" in str(refused.value)
+    assert content(tmp_path / "robot") == OLD
+    write_model(tmp_path, "robot", NEW)
+    assert content(tmp_path) == in_model(NEW)
+
+
+def test_read_only_folders_are_removed_too(tmp_path: Path) -> None:
+    folder = with_users_files(tmp_path)
+    (folder / "sub").chmod(0o500)
+    write_model(tmp_path, "robot", NEW)
+    assert (folder / "sub").stat().st_mode & 0o777 == 0o500
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["__init__.py", "robot"]
+
+
 # --- failures and interruptions at every step ---------------------------------------
 
 
