@@ -162,7 +162,8 @@ def check(
         typer.Argument(
             metavar="NAME_OR_SPEC",
             show_default=False,
-            help="Default: every model that stands in DIR. all: the whole catalogue.",
+            help="Default: every model that stands in DIR, if the catalogue has them all; "
+            "models of your own are named by their spec files. all: the whole catalogue.",
         ),
     ] = None,
     out: Out = DEFAULT_OUT,
