@@ -103,9 +103,9 @@ def test_a_second_run_writes_the_same_bytes(tmp_path: Path) -> None:
 
 def test_a_file_of_an_earlier_generation_disappears(tmp_path: Path) -> None:
     pne_gen("stewart", "--out", tmp_path)
-    (tmp_path / "stewart/left_over.py").write_text("")
+    (tmp_path / "stewart/stewart.h").write_text("")
     pne_gen("stewart", "--out", tmp_path)
-    assert not (tmp_path / "stewart/left_over.py").exists()
+    assert not (tmp_path / "stewart/stewart.h").exists()
 
 
 def test_a_warning_is_one_line(tmp_path: Path) -> None:
