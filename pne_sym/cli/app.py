@@ -63,7 +63,8 @@ def _version(wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
-        typer.echo(f"pne-gen {version('pne-sym')}")
+        with told(debug=False):
+            Report().line(f"pne-gen {version('pne-sym')}")
         raise typer.Exit
 
 
@@ -83,7 +84,7 @@ Examples:
 \b
 Exit codes:
   0 done, 1 check or diff found a difference, 2 the input is at fault,
-  3 internal error, 130 interrupted
+  3 internal error, 130 interrupted, 141 the reader of a pipe left
 """
 
 
