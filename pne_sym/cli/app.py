@@ -34,10 +34,22 @@ app = typer.Typer(
     subcommand_metavar="NAME_OR_SPEC... | COMMAND [ARGUMENTS]",
 )
 
+
+def _folder(name: str | Path) -> Path:
+    """The path of an option; an empty one, as of a variable not set, is not the working folder."""
+    if name == "":
+        raise typer.BadParameter("the name of the folder is empty; . is the working folder")
+    return Path(name)
+
+
 Out = Annotated[
     Path,
     typer.Option(
-        "--out", "-o", metavar="DIR", help="Folder in which each model gets a folder of its own."
+        "--out",
+        "-o",
+        metavar="DIR",
+        parser=_folder,
+        help="Folder in which each model gets a folder of its own.",
     ),
 ]
 Jobs = Annotated[
