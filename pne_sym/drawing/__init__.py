@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
 CLOSED = 1e-6
-"""Largest gap of a leg (m) with which it is drawn."""
+"""Largest gap of a leg (m or rad) with which it is drawn."""
 _STAGES = 8
 
 
@@ -113,10 +113,8 @@ def _closed(
             found = legs_closed(loops, stage, found)
     gaps = loops.gaps(goal, found)
     if not max(gaps) <= CLOSED:
-        worst = int(np.argmax(gaps))
-        raise InputError(
-            f"X: legs[{worst}] does not reach it; a gap of {gaps[worst]:.3g} m is left"
-        )
+        widest = loops.widest(goal, found)
+        raise InputError(f"X: legs[{widest.leg}] does not reach it; a gap of {widest.size} is left")
     return goal.tolist(), found.tolist()
 
 
