@@ -8,7 +8,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pne_sym.writer import MODEL_NAME, check_names, is_generated, readable_errors
+from pne_sym.writer import (
+    MODEL_NAME,
+    check_names,
+    generated_names,
+    is_generated,
+    readable_errors,
+)
 
 _NOT_PRODUCT = frozenset({"__pycache__"})
 
@@ -40,6 +46,8 @@ class Difference:
 def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Difference]:
     """Compare `out/name/` with what would be generated.
 
+    Files there that are not of a generation are the user's, and make no difference.
+
     Args:
         out: the output folder.
         name: the model's name.
@@ -56,7 +64,7 @@ def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Differen
     folder = out / name
     with readable_errors(folder, "read"):
         present = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
-        present -= _NOT_PRODUCT
+        present &= (generated_names(name) | set(files)) - _NOT_PRODUCT
         differences = []
         for file in sorted(present | set(files)):
             path = Path(name, file)

@@ -69,7 +69,9 @@ def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
 
 
 def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLike[str]) -> Path:
-    """Generate a manipulator's folder below `out`, replacing it as a whole.
+    """Generate a manipulator's folder below `out`, replacing what was generated as a whole.
+
+    Other files in the folder stay.
 
     Returns:
         The model's folder.

@@ -16,15 +16,21 @@ def main(argv: Sequence[str] | None = None) -> None:
 
     Raises:
         SystemExit: always. 0 done, 1 a check found a difference, 2 the input
-            is at fault, 3 an internal error, 130 interrupted.
+            is at fault, 3 an internal error, 130 interrupted, 141 the
+            reader of a pipe left.
     """
     arguments = list(sys.argv[1:] if argv is None else argv)
     try:
         from pne_sym.cli.app import app
-        from pne_sym.cli.console import prepare_streams
+        from pne_sym.cli.console import discard_output, prepare_streams
 
         prepare_streams()
         app(arrange(arguments), prog_name="pne-gen")
     except KeyboardInterrupt:
         sys.stderr.write("pne-gen: interrupted\n")
         sys.exit(130)
+    except OSError as error:
+        # The commands tell theirs: this is help that cannot be written.
+        discard_output()
+        sys.stderr.write(f"pne-gen: error: cannot write to standard output: {error.strerror}\n")
+        sys.exit(2)

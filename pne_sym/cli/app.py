@@ -34,10 +34,22 @@ app = typer.Typer(
     subcommand_metavar="NAME_OR_SPEC... | COMMAND [ARGUMENTS]",
 )
 
+
+def _folder(name: str | Path) -> Path:
+    """The path of an option; an empty one, as of a variable not set, is not the working folder."""
+    if name == "":
+        raise typer.BadParameter("the name of the folder is empty; . is the working folder")
+    return Path(name)
+
+
 Out = Annotated[
     Path,
     typer.Option(
-        "--out", "-o", metavar="DIR", help="Folder in which each model gets a folder of its own."
+        "--out",
+        "-o",
+        metavar="DIR",
+        parser=_folder,
+        help="Folder in which each model gets a folder of its own.",
     ),
 ]
 Jobs = Annotated[
@@ -63,7 +75,8 @@ def _version(wanted: bool) -> None:
     if wanted:
         from importlib.metadata import version
 
-        typer.echo(f"pne-gen {version('pne-sym')}")
+        with told(debug=False):
+            Report().line(f"pne-gen {version('pne-sym')}")
         raise typer.Exit
 
 
@@ -83,7 +96,7 @@ Examples:
 \b
 Exit codes:
   0 done, 1 check or diff found a difference, 2 the input is at fault,
-  3 internal error, 130 interrupted
+  3 internal error, 130 interrupted, 141 the reader of a pipe left
 """
 
 
@@ -119,8 +132,8 @@ def generate(
     """Generate models.
 
     DIR/NAME/ gets the derivation (NAME.md), the NumPy code (NAME.py), the C code
-    (NAME.h, NAME.c) and a manifest (NAME.json). A folder that stands there is
-    replaced as a whole.
+    (NAME.h, NAME.c) and a manifest (NAME.json). What was generated there before is
+    replaced as a whole; other files in the folder stay.
     """
     with told(debug=debug):
         writer.check_output(out)
@@ -162,7 +175,8 @@ def check(
         typer.Argument(
             metavar="NAME_OR_SPEC",
             show_default=False,
-            help="Default: every model that stands in DIR. all: the whole catalogue.",
+            help="Default: every model that stands in DIR, if the catalogue has them all; "
+            "models of your own are named by their spec files. all: the whole catalogue.",
         ),
     ] = None,
     out: Out = DEFAULT_OUT,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import io
+import os
 import re
 import sys
 from collections.abc import Iterator
@@ -24,6 +25,8 @@ from rich.progress import (
 )
 from rich.text import Text
 
+from pne_sym.writer import OutputError
+
 _CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]")
 _DIFF_STYLES = (("+++", "bold"), ("---", "bold"), ("@@", "cyan"), ("+", "green"), ("-", "red"))
 
@@ -33,6 +36,21 @@ def prepare_streams() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def flush_output() -> None:
+    """Write what is left of standard output.
+
+    Raises:
+        OutputError: it cannot be written.
+    """
+    with _output_errors():
+        sys.stdout.flush()
+
+
+def discard_output() -> None:
+    """Let what is left of standard output, which nobody takes, go nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def print_error(message: str) -> None:
@@ -63,12 +81,14 @@ class Report:
         if self._live is not None and sys.stdout.isatty():
             self._live.console.print(Text(_visible(text), style), soft_wrap=True)
         else:
-            _print(sys.stdout, "", text, style)
+            with _output_errors():
+                _print(sys.stdout, "", text, style)
 
     def difference(self, line: str) -> None:
         """Print a line of a unified diff, also if quiet."""
         style = next((style for start, style in _DIFF_STYLES if line.startswith(start)), "")
-        _print(sys.stdout, "", line, style)
+        with _output_errors():
+            _print(sys.stdout, "", line, style)
 
     @contextlib.contextmanager
     def progress(self, total: int) -> Iterator[Step]:
@@ -112,6 +132,19 @@ class Step:
         """Count one model as done."""
         if self._progress is not None and self._task is not None:
             self._progress.advance(self._task)
+
+
+@contextlib.contextmanager
+def _output_errors() -> Iterator[None]:
+    """Tell a full disk and the like under standard output in one line."""
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        discard_output()
+        reason = error.strerror or str(error)
+        raise OutputError(f"cannot write to standard output: {reason}") from error
 
 
 def _print(stream: TextIO, start: str, text: str, style: str) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import sys
 import traceback
 import warnings
@@ -12,13 +11,15 @@ from typing import TextIO
 
 import typer
 
-from pne_sym.cli.console import print_error, print_warning
+from pne_sym.cli.console import discard_output, flush_output, print_error, print_warning
 from pne_sym.writer import OutputError
 
 DIFFERENT = 1
 INPUT_AT_FAULT = 2
 INTERNAL_ERROR = 3
 INTERRUPTED = 130
+READER_LEFT = 141
+"""What a shell tells of a program that a closed pipe (SIGPIPE) ended."""
 
 
 @contextlib.contextmanager
@@ -38,8 +39,8 @@ def told(*, debug: bool) -> Iterator[None]:
         with warnings.catch_warnings():
             warnings.simplefilter("always", SpecWarning)
             warnings.showwarning = _show_warning
-            yield
-            sys.stdout.flush()
+            with _output_complete():
+                yield
     except typer.Exit:
         raise
     except (InputError, SpecError, OutputError) as error:
@@ -49,12 +50,23 @@ def told(*, debug: bool) -> Iterator[None]:
         print_error("interrupted")
         raise typer.Exit(INTERRUPTED) from error
     except BrokenPipeError as error:
-        # Whoever read the output has seen enough, and nobody is left to tell.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        raise typer.Exit(0) from error
+        # Nobody is left to tell.  The work may not be done, nor is the answer known: not 0.
+        discard_output()
+        raise typer.Exit(READER_LEFT) from error
     except Exception as error:
         _tell_internal_error(error, debug=debug)
         raise typer.Exit(INTERNAL_ERROR) from error
+
+
+@contextlib.contextmanager
+def _output_complete() -> Iterator[None]:
+    """Write what is left of the output where its faults can still be told, not at exit."""
+    try:
+        yield
+    except typer.Exit:
+        flush_output()
+        raise
+    flush_output()
 
 
 def _tell_internal_error(error: Exception, *, debug: bool) -> None:

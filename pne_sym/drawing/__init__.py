@@ -8,6 +8,7 @@ PosixPath('stewart.svg')
 from __future__ import annotations
 
 import dataclasses
+import math
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
 CLOSED = 1e-6
-"""Largest gap of a leg (m) with which it is drawn."""
+"""Largest gap of a leg (m or rad) with which it is drawn."""
 _STAGES = 8
 
 
@@ -59,7 +60,7 @@ def draw(
     Raises:
         SpecError: the source is at fault.
         InputError: matplotlib is not installed, the file's ending is no picture's,
-            or the loops do not close at X.
+            the loops do not close at X, or an angle is not finite.
         OutputError: the picture cannot be written.
     """
     check_path(Path(path))
@@ -77,6 +78,8 @@ def picture(
     elevation: float | None = None,
 ) -> Picture:
     """The picture of a manipulator, as shapes; arguments as for `draw`."""
+    _check_angle("azimuth", azimuth)
+    _check_angle("elevation", elevation)
     scene = scene_of(manipulator, *_closed(manipulator, X, q))
     if scene.planar:
         found = planar_picture(scene)
@@ -110,16 +113,19 @@ def _closed(
             found = legs_closed(loops, stage, found)
     gaps = loops.gaps(goal, found)
     if not max(gaps) <= CLOSED:
-        worst = int(np.argmax(gaps))
-        raise InputError(
-            f"X: legs[{worst}] does not reach it; a gap of {gaps[worst]:.3g} m is left"
-        )
+        widest = loops.widest(goal, found)
+        raise InputError(f"X: legs[{widest.leg}] does not reach it; a gap of {widest.size} is left")
     return goal.tolist(), found.tolist()
 
 
 def _check_length(name: str, values: Sequence[float], wanted: int) -> None:
     if len(values) != wanted or not np.isfinite(np.array(values, dtype=float)).all():
         raise InputError(f"{name}: {wanted} numbers are needed, not {list(values)}")
+
+
+def _check_angle(name: str, value: float | None) -> None:
+    if value is not None and not math.isfinite(value):
+        raise InputError(f"{name}: a finite angle (degrees) is needed, not {value}")
 
 
 def _legend(manipulator: Manipulator) -> tuple[tuple[str, str, str], ...]:

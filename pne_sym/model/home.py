@@ -16,7 +16,7 @@ from pne_sym.model.values import EXACT, number
 
 FIELDS = ("X", "q")
 TOLERANCE = 1e-6
-"""Gap (m; axes: -) up to which the given home counts as closed."""
+"""Gap (m; axes: rad) up to which the given home counts as closed."""
 CLOSED = 1e-12
 """Gap to which a home is polished, relative to the size where that exceeds 1 m."""
 REACH = 0.5
@@ -112,17 +112,17 @@ def _closed(entry: Entry, loops: Loops, X: Array, q: Array) -> tuple[Array, Arra
         # The legs restrict the platform: the pose itself has to give way.
         new_x, new_q = all_closed(loops, X, new_q)
     moved = max(float(np.abs(new_x - X).max()), float(np.abs(new_q - q).max()))
-    gap, worst = max(gaps), int(np.argmax(gaps))
+    widest = loops.widest(X, q)
     if max(loops.gaps(new_x, new_q)) > TOLERANCE or moved > REACH:
         raise entry.fault(
-            f"X and q with gaps of at most {TOLERANCE:g} m, "
+            f"X and q with gaps of at most {TOLERANCE:g} (m or rad), "
             f"or a guess within {REACH:g} (m or rad) of such",
-            problem=f"the loops do not close at X: legs[{worst}] has a gap of {gap:.3g} m",
+            problem=f"the loops do not close at X: {widest}",
         )
-    if gap > TOLERANCE:
+    if max(gaps) > TOLERANCE:
         warnings.warn(
-            f"{entry.source}: {entry.where}: taken as a rough guess (gap {gap:.3g} m at "
-            f"legs[{worst}]); closed by a change of at most {moved:.3g} (m or rad)",
+            f"{entry.source}: {entry.where}: taken as a rough guess (gap {widest.size} at "
+            f"legs[{widest.leg}]); closed by a change of at most {moved:.3g} (m or rad)",
             SpecWarning,
             stacklevel=2,
         )

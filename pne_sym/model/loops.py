@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -18,7 +19,7 @@ from pne_sym.model.closure import (
     solve,
     unreachable,
 )
-from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
+from pne_sym.model.manipulator import Joint, Leg, PlatformJointKind, Space, Vector3
 
 Flags = npt.NDArray[np.bool_]
 
@@ -29,6 +30,32 @@ COORDINATES: dict[Space, tuple[str, ...]] = {
     Space.TRANSLATIONAL: ("x", "y", "z"),
     Space.SPHERICAL: ("qx", "qy", "qz", "qw"),
 }
+
+
+_CONDITIONS = {
+    PlatformJointKind.REVOLUTE: "the axes of its platform joint do not coincide",
+    PlatformJointKind.UNIVERSAL: "the axes of its platform joint are not perpendicular",
+    PlatformJointKind.RIGID: "its last link and the platform are not turned as they are joined",
+}
+
+
+@dataclass(frozen=True)
+class Gap:
+    """The widest gap of a mechanism's loops.
+
+    Attributes:
+        leg: its leg, counted from 0.
+        size: how wide, with its unit.
+        condition: which condition fails, in words; empty where the points do not coincide.
+    """
+
+    leg: int
+    size: str
+    condition: str = ""
+
+    def __str__(self) -> str:
+        where = f"legs[{self.leg}] has a gap of {self.size}"
+        return f"{where}: {self.condition}" if self.condition else where
 
 
 @dataclass(frozen=True)
@@ -72,6 +99,26 @@ class Loops:
             leg_gap(leg, q[s], pose)[0] for leg, s in zip(self.legs, self.slices(), strict=True)
         )
         return [float(np.abs(gap).max()) for gap in gaps]
+
+    def widest(self, X: Array, q: Array) -> Gap:
+        """The gap that is widest: a length, or an angle between axes."""
+        leg = int(np.argmax(self.gaps(X, q)))
+        pose = pose_at(self.space, X.tolist(), self.centre)
+        gap = np.abs(leg_gap(self.legs[leg], q[self.slices()[leg]], pose)[0])
+        points, axes = gap[:3], gap[3:]
+        if not axes.max(initial=0.0) > points.max():
+            return Gap(leg, f"{points.max():.3g} m")
+        kind = self.legs[leg].platform_joint.kind
+        return Gap(leg, f"{_angle(kind, axes):.3g} rad", _CONDITIONS[kind])
+
+
+def _angle(kind: PlatformJointKind, axes: Array) -> float:
+    """The angle (rad) by which a condition on axes fails that `leg_gap` tells in their terms."""
+    size = float(np.linalg.norm(axes))
+    if kind is PlatformJointKind.UNIVERSAL:  # the scalar product
+        return math.asin(min(1.0, size))
+    chord = size / math.sqrt(2.0) if kind is PlatformJointKind.RIGID else size
+    return 2.0 * math.asin(min(1.0, chord / 2.0))
 
 
 def legs_closed(loops: Loops, X: Array, q: Array) -> Array:

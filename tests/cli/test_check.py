@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shlex
 from pathlib import Path
 
@@ -66,11 +67,16 @@ def test_a_changed_file_is_shown_as_a_unified_diff(out: Path) -> None:
 
 def test_missing_and_stale_files_are_named(out: Path) -> None:
     (out / "stewart/stewart.c").unlink()
-    (out / "stewart/extra.h").write_text("")
+    (out / "stewart/stewart.h").write_text("")
     done = pne_gen("check", "--out", out)
     assert done.returncode == 1
     assert f"missing: {out}/stewart/stewart.c\n" in done.stdout
-    assert f"stale: {out}/stewart/extra.h\n" in done.stdout
+    assert f"stale: {out}/stewart/stewart.h\n" in done.stdout
+
+
+def test_the_user_s_own_files_make_no_difference(out: Path) -> None:
+    (out / "stewart/notes.txt").write_text("mine\n")
+    assert pne_gen("check", "--out", out).returncode == 0
 
 
 def test_a_missing_folder_and_a_missing_output_folder(tmp_path: Path) -> None:
@@ -95,6 +101,31 @@ def test_the_command_shown_mends_it(damage: str, out: Path) -> None:
     assert program == PROGRAM.name
     assert pne_gen(*arguments).returncode == 0
     assert tree(out) == before
+
+
+def test_the_commands_of_the_readme_work_one_after_the_other(tmp_path: Path) -> None:
+    readme = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+    section = readme.partition("## Any manipulator of the kind")[2]
+    commands = section.partition("```sh\n")[2].partition("```")[0].splitlines()
+    assert pne_gen("stewart", "--out", "generated/", cwd=tmp_path).returncode == 0  # make demo
+    for command in commands:
+        program, *arguments = shlex.split(command, comments=True)
+        assert program == PROGRAM.name
+        done = pne_gen(*arguments, cwd=tmp_path)
+        assert done.returncode == 0, f"{command}\n{done.stderr}"
+    assert any(command.startswith("pne-gen check") for command in commands)
+
+
+def test_the_commands_of_the_page_on_review_work(tmp_path: Path) -> None:
+    page = (Path(__file__).parents[2] / "docs/code-review.md").read_text(encoding="utf-8")
+    commands = set(re.findall(r"pne-gen check [^`\n]+", page))
+    assert len(commands) >= 2
+    (tmp_path / "robots").mkdir()
+    own_spec(tmp_path / "robots")
+    pne_gen("stewart", "robots/my_robot.toml", "--out", "generated/", cwd=tmp_path)
+    for command in commands:
+        arguments = shlex.split(command.replace("robots/*.toml", "robots/my_robot.toml"))[1:]
+        assert pne_gen(*arguments, cwd=tmp_path).returncode == 0, command
 
 
 def test_check_of_a_spec_file_of_ones_own(tmp_path: Path) -> None:

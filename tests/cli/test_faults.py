@@ -95,6 +95,17 @@ def test_debug_shows_the_traceback_of_an_internal_error(tmp_path: Path) -> None:
     assert "Traceback" in done.stderr
 
 
+@pytest.mark.parametrize("command", [["stewart"], ["all"], ["check", "stewart"]])
+@pytest.mark.parametrize("option", [["--out", ""], ["--out="], ["-o", ""]])
+def test_an_output_folder_without_a_name(
+    command: list[str], option: list[str], tmp_path: Path
+) -> None:
+    done = pne_gen(*command, *option, cwd=tmp_path)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert "the name of the folder is empty" in done.stderr
+    assert tree(tmp_path) == {}
+
+
 def test_an_unknown_option(tmp_path: Path) -> None:
     done = pne_gen("stewart", "--ouput", tmp_path)
     assert done.returncode == 2

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import pne_sym.manipulators
-from tests.cli.program import PROGRAM, on_a_terminal, pne_gen, tree
+from tests.cli.program import PROGRAM, environment, on_a_terminal, pne_gen, tree
 
 STEWART_SPEC = Path(pne_sym.manipulators.__file__).with_name("stewart.toml")
 
@@ -103,9 +103,9 @@ def test_a_second_run_writes_the_same_bytes(tmp_path: Path) -> None:
 
 def test_a_file_of_an_earlier_generation_disappears(tmp_path: Path) -> None:
     pne_gen("stewart", "--out", tmp_path)
-    (tmp_path / "stewart/left_over.py").write_text("")
+    (tmp_path / "stewart/stewart.h").write_text("")
     pne_gen("stewart", "--out", tmp_path)
-    assert not (tmp_path / "stewart/left_over.py").exists()
+    assert not (tmp_path / "stewart/stewart.h").exists()
 
 
 def test_a_warning_is_one_line(tmp_path: Path) -> None:
@@ -129,7 +129,38 @@ def test_list_has_a_tab_between_name_and_title_when_piped() -> None:
     assert all(title for _, title in rows)
 
 
-def test_a_reader_that_leaves_early_is_no_error() -> None:
-    command = f"{PROGRAM} list | true; echo ${{PIPESTATUS[0]}}"
-    done = subprocess.run(["bash", "-c", command], capture_output=True, text=True, check=True)
-    assert (done.stdout, done.stderr) == ("0\n", "")
+@pytest.mark.parametrize(
+    "arguments", ["list", "check delta --out {}/none", "diff sixbar {}/changed.toml"]
+)
+def test_a_reader_that_leaves_early_is_told_nothing_but_not_0(
+    arguments: str, tmp_path: Path
+) -> None:
+    """Neither is all done, nor is it known that nothing differs."""
+    sixbar = STEWART_SPEC.with_name("sixbar.toml").read_text()
+    (tmp_path / "changed.toml").write_text(sixbar.replace("mass = ", "mass = 1", 1))
+    command = f"{PROGRAM} {arguments.format(tmp_path)} | true; echo ${{PIPESTATUS[0]}}"
+    real = environment(real="diff" in arguments)
+    done = subprocess.run(
+        ["bash", "-c", command], env=real, capture_output=True, text=True, check=True
+    )
+    assert (done.stdout, done.stderr) == ("141\n", "")
+
+
+@pytest.mark.parametrize(
+    "arguments", ["list", "check delta --out {}/none", "explain delta", "--help", "--version"]
+)
+def test_a_full_disk_under_the_output_is_one_line(arguments: str, tmp_path: Path) -> None:
+    real = environment(real="explain" in arguments)
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [PROGRAM, *arguments.format(tmp_path).split()],
+            env=real,
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 2
+    assert done.stderr == (
+        "pne-gen: error: cannot write to standard output: No space left on device\n"
+    )

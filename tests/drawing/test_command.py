@@ -40,6 +40,14 @@ def test_what_cannot_be_written(tmp_path: Path) -> None:
     assert "cannot write" in refused.stderr
 
 
+def test_an_angle_that_is_not_finite(tmp_path: Path) -> None:
+    refused = pne_gen("draw", "stewart", "--azimuth", "nan", "-o", tmp_path / "it.png")
+    assert (refused.returncode, refused.stdout) == (2, "")
+    assert refused.stderr == (
+        "pne-gen: error: azimuth: a finite angle (degrees) is needed, not nan\n"
+    )
+
+
 def test_matplotlib_missing(tmp_path: Path) -> None:
     (tmp_path / "matplotlib.py").write_text("raise ImportError('no matplotlib')\n")
     refused = pne_gen("draw", "stewart", cwd=tmp_path, real=True, PYTHONPATH=str(tmp_path))

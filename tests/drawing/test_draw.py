@@ -124,6 +124,15 @@ def test_impossible_poses(X: list[float] | None, q: list[float] | None, message:
         drawing.picture(manipulators.load("stewart"), X, q)
 
 
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), -float("inf")])
+@pytest.mark.parametrize("angle", ["azimuth", "elevation"])
+@pytest.mark.parametrize("name", ["stewart", "planar_3rrr"])
+def test_angles_that_are_not_finite(name: str, angle: str, value: float, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=f"{angle}: a finite angle"):
+        pne_sym.draw(name, tmp_path / "it.png", **{angle: value})
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_pose_that_a_leg_cannot_reach() -> None:
     with pytest.raises(InputError, match=r"X: legs\[\d\] does not reach it"):
         drawing.picture(manipulators.load("planar_3rrr"), [5.0, 0.0, 0.0])

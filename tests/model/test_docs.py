@@ -5,13 +5,18 @@ from __future__ import annotations
 import doctest
 import re
 import tomllib
+import types
+import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from pne_sym.mechanics.mobility import check_mobility
 from pne_sym.model import body, home, joints, legs, reader
 from pne_sym.model.errors import SpecError
 from pne_sym.model.reader import from_mapping, from_text, to_full_form
+from pne_sym.pipeline import compile_model
 from pne_sym.starter import starter_text
 
 PAGE = (Path(__file__).parents[2] / "docs" / "spec-format.md").read_text(encoding="utf-8")
@@ -24,6 +29,13 @@ def blocks(language: str) -> list[str]:
 def test_the_complete_example() -> None:
     manipulator = from_text(blocks("toml")[0], ".toml", "my_robot.toml")
     assert [len(leg.joints) for leg in manipulator.legs] == [2, 2, 2]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_mobility(manipulator)
+    module = types.ModuleType("my_robot")
+    exec(compile_model(manipulator)["my_robot.py"], module.__dict__)
+    tau = module.inverse_dynamics(module.HOME_X, np.zeros(3), np.zeros(3))
+    assert np.isfinite(tau).all()
 
 
 def test_the_full_form() -> None:
@@ -57,9 +69,9 @@ def test_every_field_is_documented(fields: tuple[str, ...]) -> None:
 def test_messages_are_those_of_the_reader() -> None:
     example = blocks("toml")[0]
     changes = [
-        ("base_point = [0.0, 0.8]", "base_pont = [0.0, 0.8]"),
+        ("base_point = [0.1, 0.8]", "base_pont = [0.1, 0.8]"),
         ('axis = "x"', "axis = [1, 1]"),
-        ("platform_point = [0.1732051, -0.1]", "platform_point = [0.1732051, 0.6]"),
+        ("platform_point = [0.1232051, -0.1866025]", "platform_point = [0.1232051, 0.5133975]"),
     ]
     for (old, new), shown in zip(changes, blocks("text")[0].splitlines(), strict=True):
         with pytest.raises(SpecError) as caught:

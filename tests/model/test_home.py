@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 
 from pne_sym import manipulators
-from pne_sym.model.closure import leg_gap, pose_at
+from pne_sym.model.closure import leg_gap, pose_at, turned
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import (
+    JointKind,
     Leg,
     Manipulator,
     PlatformJoint,
@@ -87,6 +88,53 @@ def test_a_home_out_of_reach_is_refused() -> None:
     form["home"]["X"][2] = 3.0
     with pytest.raises(SpecError, match=r"home: the loops do not close at X: legs\[\d\] has a gap"):
         from_mapping(form, "far.json")
+
+
+def axis_turned(axis: Any, towards: Any, angle: float) -> Any:
+    """A unit axis turned towards another by an angle."""
+    aside = towards - (towards @ axis) * axis
+    return math.cos(angle) * axis + math.sin(angle) * aside / np.linalg.norm(aside)
+
+
+@pytest.mark.parametrize(
+    ("kind", "failing"),
+    [("U", "are not perpendicular"), ("R", "do not coincide"), ("rigid", "are not turned as")],
+)
+@pytest.mark.parametrize("angle", [1e-3, 0.3, 1.2])
+def test_a_gap_between_axes_is_an_angle(kind: str, failing: str, angle: float) -> None:
+    """The points coincide: the condition that fails is named, and told in its unit."""
+    m = manipulators.load("hexapod_6ucu" if kind == "U" else "hexapod_6x6r")
+    leg, q = m.legs[0], np.array(m.home.q[: len(m.legs[0].joints)])
+    pose = pose_at(m.space, m.home.X, None)
+    frame = np.array(leg.base_frame)
+    for joint, displacement in zip(leg.joints, q, strict=True):
+        if joint.kind is not JointKind.PRISMATIC:
+            frame = frame @ turned(joint.axis, displacement)
+    link_to_platform = frame.T @ pose.R
+    given = leg.platform_joint
+    if kind == "rigid":
+        rotation = link_to_platform @ turned((0.0, 0.0, 1.0), angle)
+        joint = replace(given, kind=PlatformJointKind.RIGID, rotation=rotation.tolist())
+        joint = replace(joint, axis_link=None, axis_platform=None)
+    else:
+        towards = link_to_platform.T @ np.array(given.axis_link)
+        towards = towards if kind == "U" else np.array([0.36, 0.48, 0.8])
+        axis = axis_turned(np.array(given.axis_platform), towards, angle)
+        joint = replace(given, axis_platform=tuple(axis.tolist()))
+    loops = Loops(m.space, (replace(leg, platform_joint=joint),), None)
+    widest = str(loops.widest(np.array(m.home.X), q))
+    assert widest.startswith(f"legs[0] has a gap of {angle:.3g} rad: ")
+    assert failing in widest
+
+
+def test_a_home_whose_axes_are_not_perpendicular_is_refused_in_radians() -> None:
+    form = form_of("hexapod_6ucu")
+    leg = form["legs"][2]
+    leg["platform_joint"]["axis_platform"] = [0.0, 0.0, 1.0]
+    with pytest.raises(SpecError) as refused:
+        from_mapping(form, "skew.json")
+    assert "legs[2] has a gap of " in str(refused.value)
+    assert " rad: the axes of its platform joint are not perpendicular" in str(refused.value)
 
 
 def test_the_quaternion_is_normalised() -> None:

@@ -18,7 +18,7 @@ from pne_sym import writer
 from pne_sym.writer import OutputError, check_output, write_model
 
 MANIFEST = '{"generator": {"name": "pne_sym"}}\n'
-OLD = {"robot.py": "x = 1\n", "robot.json": MANIFEST, "stale.py": "\n"}
+OLD = {"robot.py": "x = 1\n", "robot.json": MANIFEST, "robot.h": "\n"}
 NEW = {"robot.py": "x = 2\n# \u03c6\u00e9\n", "robot.json": MANIFEST, "robot.c": "int x;\n"}
 
 
@@ -53,6 +53,54 @@ def test_replaces_the_folder_as_a_whole(tmp_path: Path) -> None:
     write_model(tmp_path, "robot", OLD)
     write_model(tmp_path, "robot", NEW)
     assert content(tmp_path) == in_model(NEW)
+
+
+USERS = {"notes.txt": "mine\n", ".hidden": "mine\n", "sub/robot.py": "mine\n"}
+
+
+def with_users_files(out: Path) -> Path:
+    """A model generated before, with files, folders and a link of the user's among its own."""
+    folder = write_model(out, "robot", OLD)
+    (folder / "sub/empty").mkdir(parents=True)
+    (folder / "link").symlink_to("nowhere")
+    for name, text in USERS.items():
+        (folder / name).write_text(text)
+    return folder
+
+
+def users_files_stand(folder: Path) -> bool:
+    return (folder / "link").is_symlink() and (folder / "sub/empty").is_dir()
+
+
+@pytest.mark.parametrize("links", [True, False], ids=["links", "no links"])
+def test_the_user_s_files_stay(
+    links: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = with_users_files(tmp_path)
+    (folder / "__pycache__").mkdir()
+    (folder / "__pycache__/robot.pyc").write_text("old")
+    (folder / "notes.txt").chmod(0o600)
+    os.utime(folder / "notes.txt", (1e9, 1e9))
+
+    def refused(*_: object, **__: object) -> None:
+        raise OSError(errno.EPERM, "Operation not permitted")
+
+    if not links:
+        monkeypatch.setattr(os, "link", refused)
+    write_model(tmp_path, "robot", NEW)
+    assert content(folder) == NEW | USERS
+    assert users_files_stand(folder)
+    stat = (folder / "notes.txt").stat()
+    assert (stat.st_mtime, stat.st_mode & 0o777, stat.st_nlink) == (1e9, 0o600, 1)
+
+
+def test_a_folder_in_the_place_of_a_file_is_not_replaced(tmp_path: Path) -> None:
+    folder = write_model(tmp_path, "robot", OLD)
+    (folder / "robot.c").mkdir()
+    (folder / "robot.c/mine.c").write_text("mine\n")
+    with pytest.raises(OutputError, match=r"robot/robot\.c is a folder"):
+        write_model(tmp_path, "robot", NEW)
+    assert content(folder) == OLD | {"robot.c/mine.c": "mine\n"}
 
 
 def test_other_models_and_files_stay(tmp_path: Path) -> None:
@@ -176,6 +224,33 @@ def test_a_usable_output_path_is_left_alone(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.parametrize("suffix", ["pne-old", "pne-tmp"])
+def test_what_stands_in_the_way_is_named(
+    suffix: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A folder left over from an earlier run that cannot be removed."""
+    write_model(tmp_path, "robot", OLD)
+    left_over = tmp_path / f".robot.{suffix}"
+    left_over.mkdir()
+    (left_over / "file").write_text("")
+    with monkeypatch.context() as patch:
+        patch.setattr(writer.shutil, "rmtree", lambda *_, **__: None)
+        with pytest.raises(OutputError) as refused:
+            write_model(tmp_path, "robot", NEW)
+    assert f"{left_over}, left over from an earlier run, cannot be removed" in str(refused.value)
+    assert content(tmp_path / "robot") == OLD
+    write_model(tmp_path, "robot", NEW)
+    assert content(tmp_path) == in_model(NEW)
+
+
+def test_read_only_folders_are_removed_too(tmp_path: Path) -> None:
+    folder = with_users_files(tmp_path)
+    (folder / "sub").chmod(0o500)
+    write_model(tmp_path, "robot", NEW)
+    assert (folder / "sub").stat().st_mode & 0o777 == 0o500
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["__init__.py", "robot"]
+
+
 # --- failures and interruptions at every step ---------------------------------------
 
 
@@ -192,6 +267,7 @@ class Saboteur:
             (Path, "open"),
             (os, "fsync"),
             (Path, "rename"),
+            (os, "link"),
             (writer.shutil, "rmtree"),
         ):
             patch.setattr(owner, name, self._guarded(getattr(owner, name)))
@@ -239,6 +315,24 @@ def test_whatever_step_fails_a_whole_folder_is_there(
         if not there_was_such_a_step:
             assert found == NEW
             assert at > 15
+            return
+    pytest.fail("no end of steps")
+
+
+@pytest.mark.parametrize("after", [False, True])
+@pytest.mark.parametrize("error", ERRORS, ids=["interrupted", "disk full"])
+def test_whatever_step_fails_the_user_s_files_are_there(
+    error: BaseException, after: bool, tmp_path: Path
+) -> None:
+    for at in range(1, 100):
+        out = tmp_path / str(at)
+        folder = with_users_files(out)
+        there_was_such_a_step = sabotage(out, at, error, after=after)
+        assert content(folder) in (OLD | USERS, NEW | USERS), f"step {at}"
+        assert users_files_stand(folder), f"step {at}"
+        write_model(out, "robot", NEW)
+        assert content(folder) == NEW | USERS, f"step {at}"
+        if not there_was_such_a_step:
             return
     pytest.fail("no end of steps")
 
