@@ -64,6 +64,12 @@ def _axial(t: Any) -> Any:
     return np.array([t[2, 1] - t[1, 2], t[0, 2] - t[2, 0], t[1, 0] - t[0, 1]])
 
 
+def _power(base: Any, exponent: Any) -> Any:
+    """As arrays do it: infinite for a division by zero, NaN for the root of a negative number."""
+    with np.errstate(all="ignore"):
+        return np.float64(base) ** exponent
+
+
 _OPERATIONS: dict[type, Any] = {
     n.VectorAdd: lambda *terms: sum(terms),
     n.TensorAdd: lambda *terms: sum(terms),
@@ -81,7 +87,7 @@ _OPERATIONS: dict[type, Any] = {
     n.Axial: _axial,
     sp.Add: lambda *terms: sum(terms),
     sp.Mul: lambda *factors: np.prod(factors),
-    sp.Pow: lambda base, exponent: base**exponent,
+    sp.Pow: _power,
     sp.sin: np.sin,
     sp.cos: np.cos,
     sp.atan2: np.arctan2,
