@@ -93,18 +93,23 @@ def test_the_driver_lets_a_broken_file_pass(repository: Path) -> None:
 
 def test_the_workflows_own_commands(repository: Path) -> None:
     base = {"BASE": "main"}
+    (repository / "robots").mkdir()
+    spec = (repository / "my_robot.toml").rename(repository / "robots/my_robot.toml")
+    assert pne_gen(spec, "--out", repository / "generated", real=True).returncode == 0
+    git(repository, "add", "-A")
+    git(repository, "commit", "-q", "-m", "a robot of its own")
     assert shell(step("Check"), repository).returncode == 0
     git(repository, "checkout", "-q", "-b", "change")
     pne_gen("sixbar", "--out", repository / "generated", real=True)
-    module = repository / "generated/planar_3rpr/planar_3rpr.py"
+    module = repository / "generated/my_robot/my_robot.py"
     module.write_text(module.read_text().replace("_TOLERANCE = 1", "_TOLERANCE = 2", 1))
     checked = shell(step("Check"), repository)
     assert checked.returncode == 1
-    assert "to mend it: pne-gen planar_3rpr --out generated" in checked.stdout
+    assert "to mend it: pne-gen robots/my_robot.toml --out generated" in checked.stdout
     done = shell(step("Diff"), repository, **base)
     assert (done.returncode, done.stderr) == (0, "")
     comment = (repository / "comment.md").read_text()
-    assert "## planar_3rpr\n### ✅ equal: identical text" in comment
+    assert "## my_robot\n### ✅ equal: identical text" in comment
     assert "## sixbar\nNew.\n" in comment
 
 
