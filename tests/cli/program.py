@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import pty
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -41,6 +42,11 @@ def pne_gen(
     )
 
 
+def heed_interrupts() -> None:
+    """In a child before it runs: undo what a background job of a shell inherits."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def start(*arguments: str | Path, fault: str) -> subprocess.Popen[str]:
     """Start the program and leave it running."""
     return subprocess.Popen(
@@ -50,6 +56,7 @@ def start(*arguments: str | Path, fault: str) -> subprocess.Popen[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        preexec_fn=heed_interrupts,
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import PROGRAM, environment, pne_gen, start, tree
+from tests.cli.program import PROGRAM, environment, heed_interrupts, pne_gen, start, tree
 
 
 @pytest.fixture
@@ -48,6 +48,7 @@ def test_control_c_ends_the_worker_processes_too(tmp_path: Path) -> None:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
+        preexec_fn=heed_interrupts,
     )
     assert process.stderr is not None
     assert process.stderr.readline() == "compiling\n"
