@@ -56,7 +56,7 @@ def start(*arguments: str | Path, fault: str) -> subprocess.Popen[str]:
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
-        preexec_fn=heed_interrupts,
+        preexec_fn=heed_interrupts,  # noqa: PLW1509 (no threads)
     )
 
 

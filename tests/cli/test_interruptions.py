@@ -48,7 +48,7 @@ def test_control_c_ends_the_worker_processes_too(tmp_path: Path) -> None:
         stderr=subprocess.PIPE,
         text=True,
         start_new_session=True,
-        preexec_fn=heed_interrupts,
+        preexec_fn=heed_interrupts,  # noqa: PLW1509 (no threads)
     )
     assert process.stderr is not None
     assert process.stderr.readline() == "compiling\n"
