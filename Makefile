@@ -16,8 +16,8 @@ KATEX := tests/tools/katex
 # The models that stand in generated/; `all` for the whole catalogue.
 MODELS ?= all
 DOCUMENTS = $(wildcard README.md docs/*.md generated/*/*.md)
-# Two workers, a file each at a time: models are compiled once per file.
-PYTEST_ARGS ?= -n 2 --dist loadfile
+# Two workers, a file each at a time and in their order, in which the long ones do not come last.
+PYTEST_ARGS ?= -n 2 --dist loadfile --no-loadscope-reorder
 
 # Mechanisms drawn at random by `make random`: how many, and the first seed.
 RANDOM_COUNT ?= 600
