@@ -116,14 +116,11 @@ def _overview(entries: list[Entry]) -> str:
 def _section(each: Entry) -> str:
     manipulator, m = each.manipulator, each.mobility
     name = manipulator.name
-    constraints = str(m.constraints)
-    if m.overconstrained:
-        constraints += f", of which {m.overconstrained} follow from the others"
     rows = [
         ("legs", _legs(manipulator)),
         ("degrees of freedom", str(m.freedoms)),
         ("drives", str(m.drives)),
-        ("constraints", constraints),
+        ("constraints", str(m.constraints)),
         ("extra coordinates", str(m.extra) + (f", {m.passive} passive" if m.passive else "")),
         ("section 3 of the paper", "<br>".join(f"{case} {CASES[case]}" for case in m.cases)),
         ("operations, dynamics", _operations(each.dynamics, each.calls[0])),

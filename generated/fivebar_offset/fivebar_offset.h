@@ -166,8 +166,8 @@ size_t fivebar_offset_dynamics_batch(const fivebar_offset_model *model, size_t n
     fivebar_offset_real *X, const fivebar_offset_real *V, fivebar_offset_real *M,
     fivebar_offset_real *Z, fivebar_offset_real *H, int *status);
 
-/* Residuals of the constraints [m]; zero where the loops close. 18 mul, 11 add, 1 div, 1 sqrt, 0
-   trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 18 mul, 11 add,
+   1 div, 1 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int fivebar_offset_constraints(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *residual);
 size_t fivebar_offset_constraints_batch(const fivebar_offset_model *model, size_t n, const

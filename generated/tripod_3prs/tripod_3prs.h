@@ -141,8 +141,8 @@ size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, cons
     *X, const tripod_3prs_real *V, tripod_3prs_real *M, tripod_3prs_real *Z, tripod_3prs_real *H,
     int *status);
 
-/* Residuals of the constraints [m]; zero where the loops close. 36 mul, 42 add, 0 div, 0 sqrt, 0
-   trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 36 mul, 42 add,
+   0 div, 0 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int tripod_3prs_constraints(const tripod_3prs_model *model, const tripod_3prs_real *X,
     tripod_3prs_real *residual);
 size_t tripod_3prs_constraints_batch(const tripod_3prs_model *model, size_t n, const

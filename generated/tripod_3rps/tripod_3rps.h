@@ -138,8 +138,8 @@ size_t tripod_3rps_dynamics_batch(const tripod_3rps_model *model, size_t n, cons
     *X, const tripod_3rps_real *V, tripod_3rps_real *M, tripod_3rps_real *Z, tripod_3rps_real *H,
     int *status);
 
-/* Residuals of the constraints [m]; zero where the loops close. 36 mul, 42 add, 0 div, 0 sqrt, 0
-   trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 36 mul, 42 add,
+   0 div, 0 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int tripod_3rps_constraints(const tripod_3rps_model *model, const tripod_3rps_real *X,
     tripod_3rps_real *residual);
 size_t tripod_3rps_constraints_batch(const tripod_3rps_model *model, size_t n, const

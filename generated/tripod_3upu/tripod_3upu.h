@@ -143,8 +143,8 @@ size_t tripod_3upu_dynamics_batch(const tripod_3upu_model *model, size_t n, cons
     *X, const tripod_3upu_real *V, tripod_3upu_real *M, tripod_3upu_real *Z, tripod_3upu_real *H,
     int *status);
 
-/* Residuals of the constraints [m]; zero where the loops close. 138 mul, 102 add, 3 div, 3 sqrt,
-   0 trig. In: X (NQ). Out: residual (NC). */
+/* Residuals of the constraints [m, or 1 for angles]; zero where the loops close. 138 mul, 102
+   add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: residual (NC). */
 int tripod_3upu_constraints(const tripod_3upu_model *model, const tripod_3upu_real *X,
     tripod_3upu_real *residual);
 size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, const

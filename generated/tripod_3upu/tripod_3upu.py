@@ -5144,7 +5144,7 @@ def Hk(X, p=None):
 
 
 def constraints(X, p=None):
-    """Residuals (..., NC) of the constraints [m]; zero where the loops close (Eq. 37)."""
+    """Residuals (..., NC) of the constraints [m, or 1 for angles]; zero on closed loops (Eq. 37)."""
     return _evaluate(_CONSTRAINTS, p, X=_vector("constraints", "X", X, NQ))[0]
 
 

@@ -86,30 +86,28 @@ def _program_functions(bundle: Bundle, d: Described) -> list[Api]:
         return Argument(name, math.prod(n[s] for s in shape), " x ".join(shape))
 
     M, Z, H = made("M", "NV", "NV"), made("Z", "NV"), made("H", "NV", "NU")
-    rows: list[tuple[str, str, tuple[Argument, ...], Argument, str]] = [
-        ("M", "Inertia matrix M.", (X,), M, "M"),
-        ("Z", "Velocity and gravity terms Z.", (X, V), Z, "Z"),
-        ("H", "Force transformation H: actuators to task space.", (X,), H, "H"),
-        ("Hk", "Directions Hk of the constraint forces lambda.", (X,), made("Hk", "NV", "NC"),
-         "Hk"),
-        ("constraints", "Residuals of the constraints [m]; zero where the loops close.", (X,),
-         made("residual", "NC"), "constraints"),
-        ("constraint_bias", "The vector bias in Hk^T A + bias = 0.", (X, V), made("bias", "NC"),
-         "constraint_bias"),
-        ("inverse_kinematics",
-         "Displacements q of all joints, on the assembly branch of home"
-         + ("; iterated ones: the closure next to q0." if d.is_numeric else "."), (X,),
-         made("q", "NJ"), "q"),
-        ("joint_rates", "Rates of all joints.", (X, V), made("rates", "NJ"), "qd"),
+    branch = "on the assembly branch of home"
+    if d.is_numeric:
+        branch += "; iterated ones: the closure next to q0"
+    rows: list[tuple[str, str, tuple[Argument, ...], tuple[Argument, ...], tuple[str, ...]]] = [
+        ("M", "Inertia matrix M.", (X,), (M,), ("M",)),
+        ("Z", "Velocity and gravity terms Z.", (X, V), (Z,), ("Z",)),
+        ("H", "Force transformation H: actuators to task space.", (X,), (H,), ("H",)),
+        ("Hk", "Directions Hk of the constraint forces lambda.", (X,),
+         (made("Hk", "NV", "NC"),), ("Hk",)),
+        ("dynamics", "M, Z and H together, sharing the work.", (X, V), (M, Z, H), ("M", "Z", "H")),
+        ("constraints",
+         "Residuals of the constraints [m, or 1 for angles]; zero where the loops close.", (X,),
+         (made("residual", "NC"),), ("constraints",)),
+        ("constraint_bias", "The vector bias in Hk^T A + bias = 0.", (X, V),
+         (made("bias", "NC"),), ("constraint_bias",)),
+        ("inverse_kinematics", f"Displacements q of all joints, {branch}.", (X,),
+         (made("q", "NJ"),), ("q",)),
+        ("joint_rates", "Rates of all joints.", (X, V), (made("rates", "NJ"),), ("qd",)),
         ("joint_accelerations", "Accelerations of all joints.", (X, V, A),
-         made("accelerations", "NJ"), "qdd"),
+         (made("accelerations", "NJ"),), ("qdd",)),
     ]  # fmt: skip
-    single = [Api(name, does, given, (out,), (of,)) for name, does, given, out, of in rows]
-    together = Api(
-        "dynamics", "M, Z and H together, sharing the work.", (X, V), (M, Z, H), ("M", "Z", "H")
-    )
-    apis = [*single[:4], together, *single[4:]]
-    return [replace(a, lanes=True) for a in apis if a.name in bundle.program.functions]
+    return [Api(*row, lanes=True) for row in rows if row[0] in bundle.program.functions]
 
 
 def _solved(d: Described) -> list[Api]:

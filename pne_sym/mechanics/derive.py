@@ -26,6 +26,10 @@ from pne_sym.vector import Dot, Vector, VectorSymbol, ZeroVector, sum_over_legs,
 def derive(manipulator: Manipulator) -> Derivation:
     """Derive the task-space dynamics of a manipulator.
 
+    Raises:
+        SpecError: the method does not cover it, or it has no determined dynamics; with the
+            mechanical reason.
+
     Reference: section 2 of the paper; legs are derived once per leg type.
     """
     book = Book()

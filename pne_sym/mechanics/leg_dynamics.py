@@ -20,7 +20,8 @@ import sympy as sp
 from pne_sym.derivation import Book, Law, ParameterField, Quantity
 from pne_sym.mechanics.composite import CompositeWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.leg_motion import LegMotion, LinearWriter, MotionWriter
+from pne_sym.mechanics.leg_motion import MotionWriter
+from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, symmetric_entries
 from pne_sym.vector import (
     Axial,
@@ -222,7 +223,6 @@ class DynamicsWriter:
         self.book, self.g, self.p, self.motion, self.k = book, g, platform, motion, kinematics
         self.write = LinearWriter(book, g, motion)
         self.bodies = bodies
-        self.zero: LinearForm = LinearForm({}, ZeroVector)
 
     def rest(self, symbol: Any) -> Any:
         """Remainder of a quantity at zero acceleration."""
@@ -291,7 +291,33 @@ class DynamicsWriter:
         members = [b for b in self.bodies if b.group == group]
         if not members or group == 0:
             return ZeroVector
-        frame = g.frame("axes", group)
+        J, second = self._group_inertia(group, members)
+        omega, alpha = motion.omega[group], motion.alpha[group]
+        moments = [Cross(b.first_moment, relative[b.joint]) for b in members]
+        rest_moments = [Cross(b.first_moment, self.rest(relative[b.joint])) for b in members]
+        ways = [(moments, rest_moments), *self._gathered_moments(members, relative)]
+        turning, turning_rest = (
+            Axial(Compose(tensor, second)) for tensor in motion.acceleration_tensor[group]
+        )
+        return self.write.define(
+            f"mu_{group}",
+            vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
+            rf"\boldsymbol\mu_{{{group}}}",
+            f"inertia moment of the links that turn with link {group}, about their "
+            f"reference points",
+            Law.EULER,
+            unit="N m",
+            coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}",
+            body=g.frame("axes", group),
+            forms=tuple(vector_sum((turning, *terms)) for terms, _ in ways),
+            rest_forms=tuple(vector_sum((turning_rest, *terms)) for _, terms in ways),
+            reference="Eq. 2",
+            collected=not g.composite,
+        )
+
+    def _group_inertia(self, group: int, members: list[LinkBody]) -> tuple[Any, Any]:
+        """Inertia tensor J of a group's links, each about its reference point; tr(J)/2 E - J."""
+        g, frame = self.g, self.g.frame("axes", group)
         J = tensor_sum(b.inertia for b in members)
         if not isinstance(J, TensorSymbol):
             J = self.book.define(
@@ -316,46 +342,20 @@ class DynamicsWriter:
             parameter=True,
             symmetric=True,
         )
-        omega, alpha = motion.omega[group], motion.alpha[group]
-        moments = [Cross(b.first_moment, relative[b.joint]) for b in members]
-        tensor, tensor_rest = motion.acceleration_tensor[group]
-        gathered = self._gathered_moments(members, relative)
-        rest_moments = [Cross(b.first_moment, self.rest(relative[b.joint])) for b in members]
-        return self.write.define(
-            f"mu_{group}",
-            vector_sum((J @ alpha, Cross(omega, J @ omega), *moments)),
-            rf"\boldsymbol\mu_{{{group}}}",
-            f"inertia moment of the links that turn with link {group}, about their "
-            f"reference points",
-            Law.EULER,
-            unit="N m",
-            coefficient_latex=rf"\boldsymbol\Psi_{{{group}}}",
-            body=frame,
-            forms=(
-                vector_sum((Axial(Compose(tensor, second)), *moments)),
-                *(vector_sum((Axial(Compose(tensor, second)), *gathered[0])) for _ in gathered[:1]),
-            ),
-            rest_forms=(
-                vector_sum((Axial(Compose(tensor_rest, second)), *rest_moments)),
-                *(
-                    vector_sum((Axial(Compose(tensor_rest, second)), *gathered[1]))
-                    for _ in gathered[:1]
-                ),
-            ),
-            reference="Eq. 2",
-            collected=not g.composite,
-        )
+        return J, second
 
-    def _gathered_moments(self, members: list[LinkBody], relative: dict[int, Any]) -> Any:
-        """The moments h x (a - g) with gravity taken out once: (terms, terms at rest) or ()."""
+    def _gathered_moments(
+        self, members: list[LinkBody], relative: dict[int, Any]
+    ) -> list[tuple[list[Any], list[Any]]]:
+        """The moments h x (a - g) with gravity taken out once: (terms, terms at rest), or none."""
         g, gravity = self.g, self.p.gravity
         if len(members) < 2:
-            return ()
+            return []
         accelerations: dict[int, tuple[Any, Any]] = {}
         for b in members:
             found = self._without_gravity(relative[b.joint])
             if found is None:
-                return ()
+                return []
             accelerations[b.joint] = found
         total = self.book.define(
             g.name(f"h_group_{members[0].group}"),
@@ -368,10 +368,11 @@ class DynamicsWriter:
             parameter=True,
         )
         weight = -Cross(total, gravity)
-        return tuple(
+        terms, rest = (
             [weight, *(Cross(b.first_moment, accelerations[b.joint][k]) for b in members)]
             for k in (0, 1)
         )
+        return [(terms, rest)]
 
     def _without_gravity(self, relative: Any) -> tuple[Any, Any] | None:
         """Acceleration and its remainder, where the relative one is a named difference."""

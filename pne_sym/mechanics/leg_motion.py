@@ -1,15 +1,11 @@
 """Velocities and accelerations of a leg, and their linear forms in the platform's acceleration.
 
-Every quantity that depends on the acceleration of the platform is written three
-times: as it is (Eq. 3), and as coefficient times acceleration plus remainder
-(Eq. 4); the remainder carries the mark "o" and follows the same formula with the
-acceleration a_p (and those of extra coordinates) put to zero.
+Reference: sections 2.2, 2.3 and 2.5.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from typing import Any
 
@@ -24,6 +20,7 @@ from pne_sym.mechanics.constraints import (
 )
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
+from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.task_space import TaskSpace
 from pne_sym.vector import (
@@ -32,9 +29,7 @@ from pne_sym.vector import (
     Dot,
     DualScalar,
     DualVector,
-    LinearForm,
     Skew,
-    TensorSymbol,
     Vector,
     VectorSymbol,
     ZeroTensor,
@@ -43,191 +38,6 @@ from pne_sym.vector import (
     vector_sum,
 )
 from pne_sym.vector.nodes import scale
-
-
-@dataclass
-class LegMotion:
-    """Symbols of a leg's motion, by joint number or group.
-
-    Attributes:
-        a_p: acceleration of the connection point without its centripetal part.
-        u_1: centripetal acceleration of the connection point.
-        S_ddot: acceleration of the connection point.
-        v: velocity vectors v_j of the joints at the connection point.
-        w: reciprocal vectors w_j (without extra joints).
-        o: moment parts of the reciprocal wrenches, where the leg transmits moments.
-        m: the same as amounts along the moment directions.
-        n: moment directions.
-        nu: biases of the angular acceleration along the moment directions.
-        left_out: wrenches that do no work along the leg's freedoms.
-        qd, qdd: joint rates and accelerations.
-        omega, alpha: angular velocity and acceleration, by group.
-        spin: centripetal tensor omega~ omega~, by group.
-        acceleration_tensor: alpha~ + omega~ omega~, by group; same at zero.
-        reach: displacement within the group up to joint j's link origin.
-        span: from the group's joint to the next group's joint (or the tip).
-        known: linear forms of everything that depends on the acceleration.
-        unknowns: a_p and the accelerations of the extra coordinates.
-        ydd: accelerations of the extra coordinates, by joint.
-        gap: from the connection point as the links reach it to the platform's.
-        relative: acceleration of the connection point less the bias.
-        named: expressions that have a name, for coefficients that come out as such.
-    """
-
-    a_p: Any = None
-    u_1: Any = None
-    S_ddot: Any = None
-    v: dict[int, Vector] = field(default_factory=dict)
-    w: dict[int, VectorSymbol] = field(default_factory=dict)
-    o: dict[int, Vector] = field(default_factory=dict)
-    m: dict[int, list[Any]] = field(default_factory=dict)
-    n: list[Any] = field(default_factory=list)
-    nu: list[Any] = field(default_factory=list)
-    left_out: list[LeftOut] = field(default_factory=list)
-    qd: dict[int, Any] = field(default_factory=dict)
-    qdd: dict[int, Any] = field(default_factory=dict)
-    omega: dict[int, Vector] = field(default_factory=dict)
-    alpha: dict[int, Vector] = field(default_factory=dict)
-    spin: dict[int, Any] = field(default_factory=dict)
-    acceleration_tensor: dict[int, Any] = field(default_factory=dict)
-    slide: dict[int, Vector] = field(default_factory=dict)
-    origin_acceleration: dict[int, Vector] = field(default_factory=dict)
-    known: dict[Any, LinearForm] = field(default_factory=dict)
-    unknowns: list[Any] = field(default_factory=list)
-    ydd: dict[int, Any] = field(default_factory=dict)
-    gap: Any = None
-    relative: Any = None
-    named: dict[Any, Any] = field(default_factory=dict)
-
-
-def _mark(unknown: Any) -> str:
-    """How a coefficient names its unknown: y_3 for an extra coordinate, else alpha."""
-    stem = unknown.name.split("_")
-    return f"y_{stem[1]}" if stem[0] == "ydd" else r"\boldsymbol\alpha"
-
-
-class LinearWriter:
-    """Defines quantities that depend on the acceleration, with their linear forms."""
-
-    def __init__(self, book: Book, g: LegGeometry, motion: LegMotion) -> None:
-        self.book = book
-        self.g = g
-        self.motion = motion
-
-    def define(
-        self,
-        stem: str,
-        rhs: Any,
-        latex: str,
-        title: str,
-        law: Law,
-        *,
-        unit: str,
-        coefficient_latex: str,
-        body: str | None = None,
-        forms: Sequence[Any] = (),
-        rest_forms: Sequence[Any] = (),
-        reference: str = "",
-        collected: bool = True,
-        accelerated: Any = None,
-    ) -> Any:
-        """Define x = rhs, its coefficients and its remainder; returns x.
-
-        The coefficients are those of `accelerated`, an expression that depends on the
-        acceleration as x does (default: rhs itself).  If not `collected`, nobody needs them.
-        """
-        book, g, motion = self.book, self.g, self.motion
-        name = g.name(stem)
-        form = linear_form(rhs, motion.unknowns, motion.known)
-        if not collected:
-            form = LinearForm({}, form.remainder)
-        elif accelerated is not None:
-            other = linear_form(accelerated, motion.unknowns, motion.known)
-            form = replace(other, remainder=form.remainder)
-        symbol = book.define(
-            name, rhs, latex, title, law, unit=unit, body=body, forms=forms, reference=reference
-        )
-        words = latex, coefficient_latex, title
-        coefficients = {
-            unknown: self._coefficient(
-                k, unknown, form, words, rhs, name=name, unit=unit, body=body
-            )
-            for k, unknown in enumerate(form.coefficients)
-        }
-        remainder = form.remainder
-        if not (isinstance(remainder, VectorSymbol | sp.Symbol) or remainder in (ZeroVector, 0)):
-            remainder = book.define(
-                f"{name}_o",
-                remainder,
-                f"{latex}^{{\\circ}}",
-                f"remainder without the acceleration in: {title}",
-                Law.RULES,
-                unit=unit,
-                body=body,
-                forms=rest_forms,
-                expanded=rhs,
-                reference="Sec. 2.3, Eq. 4",
-            )
-        motion.known[symbol] = LinearForm(coefficients, remainder)
-        if collected:
-            book.collect(name, motion.known[symbol], form)
-        else:
-            book.collect_no_coefficients(name)
-        return symbol
-
-    def _unit_of(self, unknown: Any) -> str:
-        """Unit of an acceleration that is collected."""
-        if unknown == self.motion.a_p:
-            return "m/s^2"
-        slides = [y for j, y in self.motion.ydd.items() if not self.g.turns(j)]
-        return "m/s^2" if unknown in slides else "rad/s^2"
-
-    def _coefficient(
-        self,
-        k: int,
-        unknown: Any,
-        form: LinearForm,
-        words: tuple[str, str, str],
-        rhs: Any,
-        *,
-        name: str,
-        unit: str,
-        body: str | None,
-    ) -> Any:
-        """Coefficient k of a form: by its name if it has one, else defined.
-
-        The words are the quantity's LaTeX, that of its first coefficient, and its title.
-        """
-        value = self.motion.named.get(form.coefficients[unknown], form.coefficients[unknown])
-        if isinstance(value, VectorSymbol | TensorSymbol | sp.Symbol) or not value.args:
-            return value
-        latex, coefficient_latex, title = words
-        first = unknown == self.motion.a_p
-        return self.book.define(
-            f"d_{name}" if first else f"d{k}_{name}",
-            value,
-            coefficient_latex if first else f"{latex}^{{({_mark(unknown)})}}",
-            f"coefficient of the acceleration in: {title}",
-            Law.RULES,
-            body=body,
-            linear=form if first else None,
-            expanded=rhs,
-            reference="Sec. 2.3, Eq. 4",
-            unit=_PER_ACCELERATION[unit, self._unit_of(unknown)],
-        )
-
-
-# Unit of a quantity, and of the acceleration on which it depends -> unit of the coefficient.
-_PER_ACCELERATION = {
-    ("N", "m/s^2"): "kg",
-    ("N", "rad/s^2"): "kg m",
-    ("N m", "m/s^2"): "kg m",
-    ("N m", "rad/s^2"): "kg m^2",
-    ("m/s^2", "m/s^2"): "-",
-    ("m/s^2", "rad/s^2"): "m",
-    ("rad/s^2", "m/s^2"): "rad/m",
-    ("rad/s^2", "rad/s^2"): "-",
-}
 
 # Units of what is reciprocal to the freedom of a joint, by whether the joint turns.
 _FORCE_PART = {True: "1/m", False: "-"}

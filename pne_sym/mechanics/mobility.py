@@ -95,16 +95,17 @@ section 3 of the paper: ordinary (3.1)
     driven = np.array([joint.actuated for joint in joints], dtype=bool)
     held = _rank(rates[twist:][driven])
     extra = sum(joint.extra for joint in joints)
+    passive = sum(joint.extra and not joint.actuated for joint in joints)
     return Mobility(
         freedoms=freedoms,
         drives=int(driven.sum()),
         constraints=constraints,
         overconstrained=max(0, constraints + freedoms - twist - extra) if not singular else 0,
         extra=extra,
-        passive=sum(joint.extra and not joint.actuated for joint in joints),
+        passive=passive,
         undriven=freedoms - held,
         singular_legs=singular,
-        cases=_cases(manipulator, freedoms, constraints),
+        cases=_cases(manipulator, freedoms, passive, constraints),
     )
 
 
@@ -205,11 +206,12 @@ def _closure(manipulator: Manipulator) -> tuple[Array, int, tuple[int, ...]]:
     return np.vstack(rows), constraints, tuple(singular)
 
 
-def _cases(manipulator: Manipulator, freedoms: int, constraints: int) -> tuple[str, ...]:
+def _cases(
+    manipulator: Manipulator, freedoms: int, passive: int, constraints: int
+) -> tuple[str, ...]:
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     kinematic = any(joint.extra and joint.actuated for joint in joints)
-    passive = sum(joint.extra and not joint.actuated for joint in joints)
     driven = freedoms - passive  # that the drives are to determine
     found = []
     if len(manipulator.legs) > driven:

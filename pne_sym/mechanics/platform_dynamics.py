@@ -15,7 +15,7 @@ from pne_sym.derivation import Book, Law, Output
 from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.leg_motion import LegMotion
+from pne_sym.mechanics.linear_writer import LegMotion
 from pne_sym.mechanics.platform_motion import PlatformMotion
 from pne_sym.mechanics.task_space import TaskSpace
 from pne_sym.vector import (

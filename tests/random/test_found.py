@@ -44,6 +44,7 @@ from tests.oracle.projection import complete_acceleration as complete
 from tests.oracle.randomisation import matrix3, random_inertia, vector3
 from tests.oracle.specs import random_state
 from tests.random.judging import judge
+from tests.random.tally import outcome
 
 FOUND: dict[str, tuple[str, list[str]]] = {
     "the size of a vector with one component": ("spatial", ["Ry*0 Rz | S"] * 3),
@@ -72,6 +73,12 @@ def check(manipulator: Manipulator, *, with_c: bool = False) -> None:
     verdict = judge(replace(manipulator, name="found"), np.random.default_rng(5), with_c=with_c)
     assert not verdict.refused, verdict.refused
     assert not verdict.wrong, verdict.wrong
+
+
+@pytest.mark.parametrize("seed", [293, 389, 546])
+def test_seeds_on_which_the_judge_was_wrong(seed: int) -> None:
+    """A bias that is rounding alone; a state on another branch; a passive coordinate left open."""
+    assert not outcome(seed, with_c=seed == 293).problem
 
 
 # ---- mechanisms that are built ---------------------------------------------------------------

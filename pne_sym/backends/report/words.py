@@ -133,7 +133,7 @@ FUNCTIONS = {
     "inverse_kinematics": "joint displacements",
     "joint_rates": "joint rates",
     "joint_accelerations": "joint accelerations",
-    "constraints": "distances by which the legs miss the platform",
+    "constraints": "distances and angles by which the legs miss the platform",
     "legs": "leg forces, for the leg reactions",
     "potential": "potential energy",
 }
