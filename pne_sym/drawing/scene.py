@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.model.closure import pose_at, turned
-from pne_sym.model.loops import COORDINATES, Loops
+from pne_sym.model.kinematics import TASK_SPACES, base_of, chain_pose, pose_at
+from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import (
     Joint,
     JointKind,
@@ -126,7 +126,7 @@ class Scene:
 def scene_of(manipulator: Manipulator, X: Sequence[float], q: Sequence[float]) -> Scene:
     """The scene at a pose that closes the loops."""
     m = manipulator
-    pose = pose_at(m.space, X[: len(COORDINATES[m.space])], m.fixed_centre)
+    pose = pose_at(m.space, X[: len(TASK_SPACES[m.space].pose_names)], m.fixed_centre)
     slices = Loops(m.space, m.legs, m.fixed_centre).slices()
     planar = m.space in (Space.POINT, Space.PLANAR)
     anchors = np.array([pose.t + pose.R @ np.array(leg.platform_point) for leg in m.legs])
@@ -146,28 +146,23 @@ def scene_of(manipulator: Manipulator, X: Sequence[float], q: Sequence[float]) -
 
 def _walk(leg: Leg, q: Sequence[float], platform: Array, *, planar: bool) -> LegScene:
     """Every joint of a leg by itself, and the bars between them."""
-    base = np.array(leg.base_point, dtype=float)
-    point, frame = base, np.array(leg.base_frame, dtype=float)
+    start = base_of(leg)
+    chain = chain_pose(leg, q, start)
     parts: list[Part] = []
-    for index, (joint, x) in enumerate(zip(leg.joints, q, strict=True)):
-        origin, axis = point + frame @ np.array(joint.offset), frame @ np.array(joint.axis)
+    for index, joint in enumerate(leg.joints):
+        before = chain.points[index - 1] if index else start.t
+        origin, axis = chain.origins[index], chain.axes[index]
         if any(joint.offset):
-            parts.append(Bar(point, origin))
+            parts.append(Bar(before, origin))
         if joint.kind is JointKind.REVOLUTE:
-            parts.append(
-                Turn(origin, (axis,), (joint.actuated,), joint.extra, "R", joint.link.is_massless)
-            )
-            point, frame = origin, frame @ turned(joint.axis, float(x))
-            continue
-        point = origin + (x if joint.kind is JointKind.PRISMATIC else joint.pitch * x) * axis
-        parts.append(_slide(joint, origin, point, axis, grounded=index == 0))
-        if joint.kind is JointKind.HELICAL:
-            frame = frame @ turned(joint.axis, float(x))
-    tip = point + frame @ np.array(leg.platform_joint.offset)
+            turn = (axis,), (joint.actuated,), joint.extra, "R", joint.link.is_massless
+            parts.append(Turn(origin, *turn))
+        else:
+            parts.append(_slide(joint, origin, chain.points[index], axis, grounded=index == 0))
     if any(leg.platform_joint.offset):
-        parts.append(Bar(point, tip))
-    parts.append(_platform_joint(leg, tip, frame, platform, planar=planar))
-    return LegScene(base, tuple(parts))
+        parts.append(Bar(chain.points[-1] if chain.points else start.t, chain.tip))
+    parts.append(_platform_joint(leg, chain.tip, chain.last, platform, planar=planar))
+    return LegScene(start.t, tuple(parts))
 
 
 def _slide(joint: Joint, start: Array, end: Array, axis: Array, *, grounded: bool) -> Slide:

@@ -6,18 +6,14 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.derivation import Book
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.scope import turn
-from pne_sym.model.closure import pose_at
 from pne_sym.model.errors import SpecError
-from pne_sym.model.manipulator import JointKind, Leg, Manipulator
+from pne_sym.model.kinematics import Array, chain_pose, pose_at, rotation_about
+from pne_sym.model.manipulator import Leg, Manipulator
 from pne_sym.vector.evaluate import evaluate
-
-Array = NDArray[np.float64]
 
 
 def branch_signs(
@@ -81,27 +77,16 @@ def _values_at(
     leg: Leg, q: Array, g: LegGeometry, row: int, base_R_platform: Array
 ) -> dict[str, Any]:
     """All given vectors of a leg at displacements q, in leg axes (base point at the origin)."""
-    spec = [np.eye(3)]
-    origin = np.zeros(3)
-    values: dict[str, Any] = {}
-    for j, joint in enumerate(leg.joints, 1):
-        axis = np.array(joint.axis)
-        origin = origin + spec[-1] @ np.array(joint.offset)
-        rotation = spec[-1]
-        if joint.kind is not JointKind.REVOLUTE:
-            pitch = joint.pitch if joint.kind is JointKind.HELICAL else 1.0
-            origin = origin + rotation @ axis * pitch * q[j - 1]
-        if joint.kind is not JointKind.PRISMATIC:
-            rotation = rotation @ turn(axis, q[j - 1])
-        spec.append(rotation)
-        turned = np.einsum("ij,j->i", spec[-1], axis)
-        values[g.e[j].name] = turned
-    tip = origin + spec[-1] @ np.array(leg.platform_joint.offset)
+    chain = chain_pose(leg, q)
+    spec = chain.rotations
+    # Axes as their joints leave them: rotation by x about e maps e to itself.
+    axes = [R @ np.array(joint.axis) for R, joint in zip(spec[1:], leg.joints, strict=True)]
+    values: dict[str, Any] = {g.e[j].name: axis for j, axis in enumerate(axes, 1)}
     offsets = [*(joint.offset for joint in leg.joints), leg.platform_joint.offset]
     for j, vector in g.offset.items():
         if hasattr(vector, "name"):
             values[vector.name] = spec[j - 1] @ np.array(offsets[j - 1])
-    values[g.name("S")] = tip
+    values[g.name("S")] = chain.tip
     values |= {g.pitch[j].name: leg.joints[j - 1].pitch for j in g.pitch}
     for link, platform in g.pairs:
         end = leg.platform_joint
@@ -115,7 +100,7 @@ def _values_at(
 
 
 def _frame_vectors(
-    values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry, spec: list[Array], row: int
+    values: dict[str, Any], leg: Leg, q: Array, g: LegGeometry, spec: tuple[Array, ...], row: int
 ) -> None:
     """Reference directions, canonical axes, cosines and sines of the joints."""
     for j in range(1, g.count + 1):
@@ -124,7 +109,7 @@ def _frame_vectors(
         axes = spec[j] @ g.canonical[j][row]
         x_axis, e = axes[:, 0], axes[:, 2]
         cosine, sine = g.zero_angle[j][row]
-        before = spec[j] @ turn(np.array(leg.joints[j - 1].axis), -q[j - 1])
+        before = spec[j] @ rotation_about(leg.joints[j - 1].axis, -q[j - 1])
         zero = before @ g.canonical[j][row][:, 0]
         reference = cosine * zero - sine * np.cross(e, zero)
         values[g.name(f"ref_{j}")] = reference

@@ -21,14 +21,13 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Condition, Law, Quantity, ReciprocalBasis, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.scope import axes_at, moment_directions, velocity_vectors
-from pne_sym.model.closure import TWIST, Pose, displaced, least_norm, leg_gap, pose_at
-from pne_sym.model.loops import COORDINATES
-from pne_sym.model.manipulator import JointKind, Manipulator, Space
+from pne_sym.mechanics.scope import moment_directions
+from pne_sym.model.closure import least_norm, leg_gap
+from pne_sym.model.kinematics import TASK_SPACES, Array, Pose, chain_pose, displaced, pose_at
+from pne_sym.model.manipulator import Manipulator, Space
 from pne_sym.vector import (
     Cross,
     Dot,
@@ -41,7 +40,6 @@ from pne_sym.vector import (
     vector_sum,
 )
 
-Array = NDArray[np.float64]
 _PURE = 1e-6  # relative size of what counts as zero
 _BETTER = 1.01  # a choice replaces an earlier one only if it is better by this factor
 _SAMPLES, _REACH, _NEWTON = 4, 0.3, 12  # other poses of a leg: how many, how far, how exact
@@ -172,8 +170,8 @@ def _states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_Sta
     leg, space = manipulator.legs[index], manipulator.space
     start = sum(len(other.joints) for other in manipulator.legs[:index])
     q = np.array(manipulator.home.q[start : start + len(leg.joints)])
-    X = np.array(manipulator.home.X[: len(COORDINATES[space])])
-    rng, twist = np.random.default_rng(0), list(TWIST[space])
+    X = np.array(manipulator.home.X[: len(TASK_SPACES[space].pose_names)])
+    rng, twist = np.random.default_rng(0), list(TASK_SPACES[space].components)
     for _ in range(_SAMPLES):
         pose = pose_at(space, list(X), manipulator.fixed_centre)
         yield _state(manipulator, g, row, q, pose)
@@ -192,13 +190,12 @@ def _states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_Sta
 def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: Pose) -> _State:
     leg = g.leg_type.legs[row]
     free = [j for j, joint in enumerate(leg.joints) if not joint.extra]
-    axes, last = axes_at(leg, q)
-    turns = [joint.kind is not JointKind.PRISMATIC for joint in leg.joints]
+    chain = chain_pose(leg, q)
     leg_R_platform = np.array(leg.base_frame).T @ pose.R
-    tip = last @ g.canonical[g.group[g.count]][row]
+    tip = chain.last @ g.canonical[g.group[g.count]][row]
     arm = leg_R_platform @ np.array(leg.platform_point)
-    n = moment_directions(g.leg_type, leg, last, leg_R_platform)
-    columns = np.vstack([tip.T @ velocity_vectors(leg, q), n @ (np.array(axes).T * turns)])[:, free]
+    n = moment_directions(g.leg_type, leg, chain.last, leg_R_platform)
+    columns = np.vstack([tip.T @ chain.velocities, n @ chain.spins])[:, free]
     about_origin = np.vstack([tip.T @ np.cross(tip.T, arm).T, n @ tip])
     effect = {
         Space.TRANSLATIONAL: np.eye(3, len(columns)),

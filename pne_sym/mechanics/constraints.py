@@ -13,9 +13,8 @@ import sympy as sp
 from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
 from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches, direction
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.scope import axes_at
-from pne_sym.model.closure import pose_at
-from pne_sym.model.manipulator import JointKind, Manipulator
+from pne_sym.model.kinematics import chain_pose, pose_at
+from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
 
@@ -155,16 +154,11 @@ def force_vanishes(manipulator: Manipulator, g: LegGeometry) -> bool:
     for index in g.leg_type.indices:
         leg = manipulator.legs[index]
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        axes, last = axes_at(leg, q)
-        link = last @ np.array(leg.platform_joint.axis_link)
+        chain = chain_pose(leg, q)
+        link = chain.last @ np.array(leg.platform_joint.axis_link)
         platform = np.array(leg.base_frame).T @ pose.R @ np.array(leg.platform_joint.axis_platform)
         n = np.cross(link, platform)
-        along = [
-            abs(e @ n)
-            for joint, e in zip(leg.joints, axes, strict=True)
-            if joint.kind is not JointKind.PRISMATIC
-        ]
-        if max(along, default=0.0) > 1e-6:
+        if np.abs(n @ chain.spins).max(initial=0.0) > 1e-6:
             return False
     return True
 

@@ -18,7 +18,7 @@ from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
-from pne_sym.mechanics.task_space import TASK_SPACES, TaskSpace
+from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
 from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.vector import Dot, Vector, VectorSymbol, ZeroVector, sum_over_legs, vector_sum
 

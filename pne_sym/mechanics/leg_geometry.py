@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
+from pne_sym.model.kinematics import rotation_about
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, norm
 
@@ -98,7 +99,7 @@ class LegGeometry:
 
     def turns(self, j: int) -> bool:
         """Whether joint j turns (opens a group)."""
-        return self.kind(j) is not JointKind.PRISMATIC
+        return self.leg_type.model.joints[j - 1].turns
 
     def is_unseen(self, j: int) -> bool:
         """Whether turning joint j leaves the connection point where it is."""
@@ -307,7 +308,7 @@ class _Builder:
                 axis = np.array(joint.axis)
                 result[row, j - 1] = rotation @ axis
                 if j in turned:
-                    rotation = rotation @ _rodrigues(axis, turned[j])
+                    rotation = rotation @ rotation_about(axis, turned[j])
         return result
 
     def offsets(self) -> None:
@@ -738,11 +739,6 @@ def across(leg_type: LegType) -> int:
     """The coordinate direction of the last link that is most across the platform joint's axis."""
     axes = leg_type.over_legs(lambda leg: leg.platform_joint.axis_link)
     return int(np.argmin(np.abs(axes).max(axis=0)))
-
-
-def _rodrigues(axis: Array, angle: float) -> Array:
-    k = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.asarray(_E + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k)
 
 
 def _pattern(values: Array) -> tuple[Any, ...]:

@@ -22,7 +22,7 @@ from pne_sym.mechanics.inverse_kinematics import InverseKinematics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion, LinearWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion
-from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
     Compose,
     Cross,

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import TWIST, leg_gap, pose_at
+from pne_sym.model.closure import leg_gap
 from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.kinematics import TASK_SPACES, pose_at
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import Manipulator
 
@@ -89,7 +90,7 @@ section 3 of the paper: ordinary (3.1)
     """
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     closure, constraints, singular = _closure(manipulator)
-    twist = len(TWIST[manipulator.space])
+    twist = len(TASK_SPACES[manipulator.space].components)
     rates = null_space(closure)
     freedoms = rates.shape[1]
     driven = np.array([joint.actuated for joint in joints], dtype=bool)
@@ -170,7 +171,7 @@ def drive_quality(manipulator: Manipulator) -> float:
     rates = null_space(closure)
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     wanted = np.array([joint.actuated or joint.extra for joint in joints], dtype=bool)
-    rows = rates[len(TWIST[manipulator.space]) :][wanted]
+    rows = rates[len(TASK_SPACES[manipulator.space].components) :][wanted]
     if rows.shape[0] < rows.shape[1] or not rows.size:
         return 0.0
     return float(np.linalg.svd(rows, compute_uv=False)[-1])
@@ -189,7 +190,7 @@ def _closure(manipulator: Manipulator) -> tuple[Array, int, tuple[int, ...]]:
     m = manipulator
     loops = Loops(m.space, m.legs, m.fixed_centre)
     pose = pose_at(m.space, m.home.X, m.fixed_centre)
-    twist, q = TWIST[m.space], np.array(m.home.q)
+    twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
     rows, constraints, singular = [], 0, []
     for index, (leg, s) in enumerate(zip(m.legs, loops.slices(), strict=True)):
         _, by_q, by_twist = leg_gap(leg, q[s], pose)

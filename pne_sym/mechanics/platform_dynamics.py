@@ -17,7 +17,7 @@ from pne_sym.mechanics.leg_dynamics import LegDynamics
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.linear_writer import LegMotion
 from pne_sym.mechanics.platform_motion import PlatformMotion
-from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.model.kinematics import TaskSpace
 from pne_sym.vector import (
     Axial,
     Cross,

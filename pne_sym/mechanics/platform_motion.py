@@ -9,7 +9,7 @@ import numpy as np
 import sympy as sp
 
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
-from pne_sym.mechanics.task_space import TaskSpace
+from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import (
     Compose,

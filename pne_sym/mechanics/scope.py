@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pne_sym.mechanics.leg_geometry import across
 from pne_sym.mechanics.structure import LegType, is_coordinate
-from pne_sym.mechanics.task_space import TaskSpace
-from pne_sym.model.closure import pose_at
 from pne_sym.model.errors import SpecError
-from pne_sym.model.manipulator import JointKind, Leg, Manipulator, PlatformJointKind
+from pne_sym.model.kinematics import Array, ChainPose, TaskSpace, chain_pose, pose_at
+from pne_sym.model.manipulator import Leg, Manipulator, PlatformJointKind
 
-Array = NDArray[np.float64]
 _MOMENTS = {  # moments that a platform joint transmits, in space
     PlatformJointKind.SPHERICAL: 0,
     PlatformJointKind.UNIVERSAL: 1,
@@ -53,11 +50,12 @@ def _check_independent(
     for index in leg_type.indices:
         leg = manipulator.legs[index]
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
-        columns = velocity_vectors(leg, q)[:, freedoms]
+        chain = chain_pose(leg, q)
+        columns = chain.velocities[:, freedoms]
         if planar:
             columns = columns[:2]
         else:
-            turning = _turning(leg_type, leg, q, pose.R)
+            turning = _turning(leg_type, leg, chain, pose.R)
             columns = np.vstack([columns, turning[:, freedoms]])
         sizes = np.linalg.norm(columns, axis=0)
         if not len(freedoms):
@@ -78,37 +76,11 @@ def _check_independent(
             )
 
 
-def velocity_vectors(leg: Leg, q: Array) -> Array:
-    """Velocity of the connection point per joint rate, (3, joints), in leg axes."""
-    origin, rotation = np.zeros(3), np.eye(3)
-    axes, origins = [], []
-    for joint, x in zip(leg.joints, q, strict=True):
-        origin = origin + rotation @ np.array(joint.offset)
-        axis = np.array(joint.axis)
-        axes.append(rotation @ axis)
-        if joint.kind is not JointKind.REVOLUTE:
-            pitch = joint.pitch if joint.kind is JointKind.HELICAL else 1.0
-            origin = origin + rotation @ axis * pitch * x
-        origins.append(origin)
-        if joint.kind is not JointKind.PRISMATIC:
-            rotation = rotation @ turn(axis, x)
-    tip = origin + rotation @ np.array(leg.platform_joint.offset)
-    columns = []
-    for joint, e, o in zip(leg.joints, axes, origins, strict=True):
-        column = e if joint.kind is JointKind.PRISMATIC else np.cross(e, tip - o)
-        if joint.kind is JointKind.HELICAL:
-            column = column + joint.pitch * e
-        columns.append(column)
-    return np.stack(columns, axis=1)
-
-
-def _turning(leg_type: LegType, leg: Leg, q: Array, base_R_platform: Array) -> Array:
+def _turning(leg_type: LegType, leg: Leg, chain: ChainPose, base_R_platform: Array) -> Array:
     """Angular velocity along the moment directions per joint rate, (moments, joints)."""
-    axes, last = axes_at(leg, q)
-    turns = [joint.kind is not JointKind.PRISMATIC for joint in leg.joints]
     leg_R_platform = np.array(leg.base_frame).T @ base_R_platform
-    directions = moment_directions(leg_type, leg, last, leg_R_platform)
-    return np.asarray(directions @ (np.array(axes).T * turns))
+    directions = moment_directions(leg_type, leg, chain.last, leg_R_platform)
+    return np.asarray(directions @ chain.spins)
 
 
 def moment_directions(leg_type: LegType, leg: Leg, last: Array, leg_R_platform: Array) -> Array:
@@ -137,20 +109,3 @@ def moment_directions(leg_type: LegType, leg: Leg, last: Array, leg_R_platform: 
         first = first / np.linalg.norm(first)
         link = np.array([first, np.cross(axis, first)])
     return np.asarray(np.cross(link @ last.T, platform))
-
-
-def axes_at(leg: Leg, q: Array) -> tuple[list[Array], Array]:
-    """Joint axes and the last link's rotation at displacements q, in leg axes."""
-    rotation, axes = np.eye(3), []
-    for joint, x in zip(leg.joints, q, strict=True):
-        axis = np.array(joint.axis)
-        axes.append(rotation @ axis)
-        if joint.kind is not JointKind.PRISMATIC:
-            rotation = rotation @ turn(axis, x)
-    return axes, rotation
-
-
-def turn(axis: Array, angle: float) -> Array:
-    """Rotation matrix about a unit axis (Rodrigues)."""
-    k = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k)

@@ -6,96 +6,21 @@ to check and to polish the home that an author wrote.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
 
 import numpy as np
-import numpy.typing as npt
 
-from pne_sym.model.manipulator import (
-    IDENTITY3,
-    JointKind,
-    Leg,
-    PlatformJointKind,
-    Space,
-    Vector3,
-)
+from pne_sym.model.kinematics import Array, Pose, base_of, chain_pose, skew
+from pne_sym.model.manipulator import IDENTITY3, Leg, PlatformJointKind, Vector3
 
-Array = npt.NDArray[np.float64]
 Residual = Callable[[Array], Array]
 Step = Callable[[Array], Array]
 Move = Callable[[Array, Array], Array]
-
-TWIST: dict[Space, tuple[int, ...]] = {
-    Space.POINT: (0, 1),
-    Space.PLANAR: (0, 1, 5),
-    Space.SPATIAL: (0, 1, 2, 3, 4, 5),
-    Space.TRANSLATIONAL: (0, 1, 2),
-    Space.SPHERICAL: (3, 4, 5),
-}
-"""Components of the platform's twist (velocity, angular velocity) that are free."""
 
 MAX_ITERATIONS = 30
 _HALVINGS = 8
 _LARGEST_STEP = 0.3
 _SINGULAR = 1e-9
-
-
-@dataclass(frozen=True)
-class Pose:
-    """Position (m) and rotation matrix of the platform in the base frame."""
-
-    t: Array
-    R: Array
-
-
-def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:
-    """The pose that the platform coordinates state."""
-    eye = np.eye(3)
-    if space is Space.POINT:
-        return Pose(np.array([X[0], X[1], 0.0]), eye)
-    if space is Space.PLANAR:
-        return Pose(np.array([X[0], X[1], 0.0]), turned((0.0, 0.0, 1.0), X[2]))
-    if space is Space.TRANSLATIONAL:
-        return Pose(np.array(X[:3]), eye)
-    if space is Space.SPHERICAL:
-        return Pose(np.array(centre), rotation_of_quaternion(X[:4]))
-    return Pose(np.array(X[:3]), rotation_of_quaternion(X[3:7]))
-
-
-def displaced(space: Space, X: Array, step: Array) -> Array:
-    """Platform coordinates moved by a small twist (components as in `TWIST`)."""
-    if space not in (Space.SPATIAL, Space.SPHERICAL):
-        return X + step
-    start = 3 if space is Space.SPATIAL else 0
-    spin = step[start : start + 3]
-    moved = X.copy()
-    moved[:start] += step[:start]
-    x, y, z, w = X[start : start + 4]
-    rate = np.array([[w, z, -y], [-z, w, x], [y, -x, w], [-x, -y, -z]])
-    quaternion = X[start : start + 4] + 0.5 * rate @ spin
-    moved[start : start + 4] = quaternion / np.linalg.norm(quaternion)
-    return moved
-
-
-def rotation_of_quaternion(quaternion: Sequence[float]) -> Array:
-    """The rotation matrix of a unit quaternion (x, y, z, w)."""
-    x, y, z, w = quaternion
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
-        ]
-    )
-
-
-def turned(axis: Vector3, angle: float) -> Array:
-    """The rotation about a unit axis (Rodrigues' formula)."""
-    skew = _skew(np.array(axis))
-    result: Array = np.eye(3) + math.sin(angle) * skew
-    return result + (1.0 - math.cos(angle)) * (skew @ skew)
 
 
 def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
@@ -110,22 +35,15 @@ def leg_gap(leg: Leg, q: Array, pose: Pose) -> tuple[Array, Array, Array]:
         the gap (points in m, then axes), its Jacobian by q, and by the
         platform's twist (6 columns).
     """
-    origin, frame, axes = _chain(leg, q)
-    tip = origin[-1]
+    chain = chain_pose(leg, q, base_of(leg))
     arm = pose.R @ np.array(leg.platform_point)
-    gaps = [tip - pose.t - arm]
-    by_q = [_point_columns(leg, axes, origin, tip)]
-    by_twist = [np.hstack([-np.eye(3), _skew(arm)])]
-    spins = np.array(
-        [
-            a if joint.kind is not JointKind.PRISMATIC else np.zeros(3)
-            for joint, a in zip(leg.joints, axes, strict=True)
-        ]
-    )
+    gaps = [chain.tip - pose.t - arm]
+    by_q = [chain.velocities]
+    by_twist = [np.hstack([-np.eye(3), skew(arm)])]
     for link_axis, platform_axis, is_dot in _axis_conditions(leg):
-        a, b = frame @ np.array(link_axis), pose.R @ np.array(platform_axis)
-        a_by_q = np.cross(spins, a).T
-        b_by_twist = np.hstack([np.zeros((3, 3)), -_skew(b)])
+        a, b = chain.last @ np.array(link_axis), pose.R @ np.array(platform_axis)
+        a_by_q = np.cross(chain.spins.T, a).T
+        b_by_twist = np.hstack([np.zeros((3, 3)), -skew(b)])
         if is_dot:
             gaps.append(np.array([a @ b]))
             by_q.append((b @ a_by_q)[None, :])
@@ -176,37 +94,6 @@ def unreachable(matrix: Array) -> Array:
     return basis
 
 
-def _chain(leg: Leg, q: Array) -> tuple[list[Array], Array, list[Array]]:
-    """Joint origins (the platform joint last), the last link's frame, axes; base axes."""
-    point = np.array(leg.base_point)
-    frame = np.array(leg.base_frame)
-    origins: list[Array] = []
-    axes: list[Array] = []
-    for joint, displacement in zip(leg.joints, q, strict=True):
-        point = point + frame @ np.array(joint.offset)
-        direction = frame @ np.array(joint.axis)
-        origins.append(point)
-        axes.append(direction)
-        if joint.kind is JointKind.PRISMATIC:
-            point = point + displacement * direction
-        else:
-            point = point + joint.pitch * displacement * direction
-            frame = frame @ turned(joint.axis, float(displacement))
-    origins.append(point + frame @ np.array(leg.platform_joint.offset))
-    return origins, frame, axes
-
-
-def _point_columns(leg: Leg, axes: list[Array], origins: list[Array], tip: Array) -> Array:
-    """Velocity of the tip for a unit rate of each joint."""
-    columns = []
-    for joint, axis, origin in zip(leg.joints, axes, origins, strict=False):
-        if joint.kind is JointKind.PRISMATIC:
-            columns.append(axis)
-        else:
-            columns.append(np.cross(axis, tip - origin) + joint.pitch * axis)
-    return np.array(columns).T
-
-
 def _axis_conditions(leg: Leg) -> list[tuple[Vector3, Vector3, bool]]:
     """Pairs of axes (link, platform) to coincide, or to be perpendicular (True)."""
     joint = leg.platform_joint
@@ -220,7 +107,3 @@ def _axis_conditions(leg: Leg) -> list[tuple[Vector3, Vector3, bool]]:
 
 def _largest(values: Array) -> float:
     return float(np.abs(values).max(initial=0.0))
-
-
-def _skew(a: Array) -> Array:
-    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])

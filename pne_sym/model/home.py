@@ -7,10 +7,10 @@ import warnings
 
 import numpy as np
 
-from pne_sym.model.closure import Array
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecWarning
-from pne_sym.model.loops import COORDINATES, Loops, all_closed, legs_closed
+from pne_sym.model.kinematics import TASK_SPACES, Array
+from pne_sym.model.loops import Loops, all_closed, legs_closed
 from pne_sym.model.manipulator import Home, Joint, JointKind, Leg, Space, Vector3
 from pne_sym.model.values import EXACT, number
 
@@ -44,7 +44,7 @@ def read_home(entry: Entry, space: Space, legs: tuple[Leg, ...], centre: Vector3
 
 
 def _read_x(entry: Entry, loops: Loops) -> Array:
-    names = COORDINATES[loops.space] + ("extra coordinate",) * int(loops.extra.sum())
+    names = TASK_SPACES[loops.space].pose_names + ("extra coordinate",) * int(loops.extra.sum())
     items = entry.items()
     if len(items) != len(names):
         raise entry.fault(

@@ -9,28 +9,11 @@ from itertools import pairwise
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import (
-    TWIST,
-    Array,
-    displaced,
-    least_norm,
-    leg_gap,
-    pose_at,
-    solve,
-    unreachable,
-)
+from pne_sym.model.closure import least_norm, leg_gap, solve, unreachable
+from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at
 from pne_sym.model.manipulator import Joint, Leg, PlatformJointKind, Space, Vector3
 
 Flags = npt.NDArray[np.bool_]
-
-COORDINATES: dict[Space, tuple[str, ...]] = {
-    Space.POINT: ("x", "y"),
-    Space.PLANAR: ("x", "y", "phi"),
-    Space.SPATIAL: ("x", "y", "z", "qx", "qy", "qz", "qw"),
-    Space.TRANSLATIONAL: ("x", "y", "z"),
-    Space.SPHERICAL: ("qx", "qy", "qz", "qw"),
-}
-
 
 _CONDITIONS = {
     PlatformJointKind.REVOLUTE: "the axes of its platform joint do not coincide",
@@ -75,7 +58,7 @@ class Loops:
     @property
     def size(self) -> int:
         """How many platform coordinates there are."""
-        return len(COORDINATES[self.space])
+        return len(TASK_SPACES[self.space].pose_names)
 
     @property
     def joints(self) -> list[Joint]:
@@ -141,7 +124,8 @@ def legs_closed(loops: Loops, X: Array, q: Array) -> Array:
 
 def all_closed(loops: Loops, X: Array, q: Array) -> tuple[Array, Array]:
     """All legs closed together, moving the pose by what the legs cannot reach."""
-    size, twist, free = loops.size, TWIST[loops.space], ~loops.extra
+    size, free = loops.size, ~loops.extra
+    twist = TASK_SPACES[loops.space].components
     slices = loops.slices()
 
     def gaps(x: Array) -> list[tuple[Array, Array, Array]]:

@@ -93,6 +93,16 @@ class Joint:
     extra: bool = False
     link: Body = Body()
 
+    @property
+    def turns(self) -> bool:
+        """Whether the displacement is an angle."""
+        return self.kind is not JointKind.PRISMATIC
+
+    @property
+    def advance(self) -> float:
+        """Motion along the axis per unit of displacement: 1, 0, or the pitch (m/rad)."""
+        return 1.0 if self.kind is JointKind.PRISMATIC else self.pitch
+
 
 @dataclass(frozen=True)
 class PlatformJoint:

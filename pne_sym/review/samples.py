@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pne_sym.model.kinematics import rotation_about
 from pne_sym.review.model import Model
 
 Array = NDArray[np.float64]
@@ -82,6 +83,4 @@ def _turn(vector: Array) -> Array:
     angle = float(np.linalg.norm(vector))
     if angle == 0.0:
         return np.eye(3)
-    x, y, z = vector / angle
-    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.asarray(np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * (k @ k))
+    return rotation_about(vector / angle, angle)

@@ -9,15 +9,15 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from pne_sym.model.closure import Pose, leg_gap, turned
+from pne_sym.model.closure import leg_gap
 from pne_sym.model.entry import Entry
 from pne_sym.model.errors import SpecError
 from pne_sym.model.joints import read_joint
+from pne_sym.model.kinematics import Pose, chain_pose
 from pne_sym.model.manipulator import (
     IDENTITY3,
     ZERO3,
     Joint,
-    JointKind,
     Leg,
     PlatformJoint,
     PlatformJointKind,
@@ -202,17 +202,10 @@ def _columns(
 
 def _end(chain: Chain, *, plane: bool, mirrored: bool) -> tuple[Array, Array]:
     """The platform joint and the last link's axes, in the leg frame at home."""
-    point, frame = np.zeros(3), np.eye(3)
-    joints = freedoms(chain, plane=plane)
-    for joint, x in zip(joints, displacements(chain, mirrored=mirrored), strict=True):
-        point = point + frame @ np.array(joint.offset)
-        axis = frame @ np.array(joint.axis)
-        if joint.kind is JointKind.PRISMATIC:
-            point = point + x * axis
-        else:
-            point = point + joint.pitch * x * axis
-            frame = frame @ turned(joint.axis, x)
-    return point + frame @ np.array([chain.end, 0.0, 0.0]), frame
+    end = PlatformJoint(PlatformJointKind.SPHERICAL, (chain.end, 0.0, 0.0))
+    leg = Leg(ZERO3, IDENTITY3, freedoms(chain, plane=plane), end, ZERO3)
+    found = chain_pose(leg, displacements(chain, mirrored=mirrored))
+    return found.tip, found.last
 
 
 def _platform_axis(platform: str, frame: Array, axis_link: str) -> Array:

@@ -12,7 +12,7 @@ from pne_sym.drawing.scene import Scene, Slide, Turn, scene_of
 from pne_sym.drawing.shapes import Label, Picture, Shape, disc, hull, rounded
 from pne_sym.drawing.solids import Paint, ball, box, cylinder, prism
 from pne_sym.drawing.view import view_from
-from pne_sym.model.closure import pose_at
+from pne_sym.model.kinematics import pose_at
 
 SQUARE = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
 

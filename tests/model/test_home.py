@@ -11,8 +11,9 @@ import numpy as np
 import pytest
 
 from pne_sym import manipulators
-from pne_sym.model.closure import leg_gap, pose_at, turned
+from pne_sym.model.closure import leg_gap
 from pne_sym.model.errors import SpecError, SpecWarning
+from pne_sym.model.kinematics import pose_at, rotation_about
 from pne_sym.model.loops import Loops
 from pne_sym.model.manipulator import (
     JointKind,
@@ -109,11 +110,11 @@ def test_a_gap_between_axes_is_an_angle(kind: str, failing: str, angle: float) -
     frame = np.array(leg.base_frame)
     for joint, displacement in zip(leg.joints, q, strict=True):
         if joint.kind is not JointKind.PRISMATIC:
-            frame = frame @ turned(joint.axis, displacement)
+            frame = frame @ rotation_about(joint.axis, displacement)
     link_to_platform = frame.T @ pose.R
     given = leg.platform_joint
     if kind == "rigid":
-        rotation = link_to_platform @ turned((0.0, 0.0, 1.0), angle)
+        rotation = link_to_platform @ rotation_about((0.0, 0.0, 1.0), angle)
         joint = replace(given, kind=PlatformJointKind.RIGID, rotation=rotation.tolist())
         joint = replace(joint, axis_link=None, axis_platform=None)
     else:

@@ -1,0 +1,207 @@
+"""Numeric kinematics of a specification: task spaces, poses, and a leg's chain of joints.
+
+The generated code has its own inverse kinematics; what stands here serves to check a
+specification, to settle at home what is settled there, and to draw.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from pne_sym.model.manipulator import Joint, Leg, Space, Vector3
+
+Array = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class TaskSpace:
+    """What a task space consists of.
+
+    Attributes:
+        components: indices into the six components (linear, then angular) of
+            twist and wrench that are coordinates.
+        pose_names: names of the platform coordinates in X.
+        rate_names: names of the entries of V.
+        wrench_names: names of the entries of a wrench.
+        planar: everything happens in the plane z = 0.
+    """
+
+    components: tuple[int, ...]
+    pose_names: tuple[str, ...]
+    rate_names: tuple[str, ...]
+    wrench_names: tuple[str, ...]
+    planar: bool
+
+    @property
+    def rotates(self) -> bool:
+        """Whether the platform's orientation is a coordinate."""
+        return any(c >= 3 for c in self.components)
+
+    @property
+    def translates(self) -> bool:
+        """Whether the platform's position is a coordinate."""
+        return any(c < 3 for c in self.components)
+
+    @property
+    def has_quaternion(self) -> bool:
+        """Whether orientation is given by a quaternion."""
+        return "qw" in self.pose_names
+
+
+_QUATERNION = ("qx", "qy", "qz", "qw")
+_V = ("vx", "vy", "vz", "wx", "wy", "wz")
+_W = ("fx", "fy", "fz", "mx", "my", "mz")
+
+
+def _space(components: tuple[int, ...], pose: tuple[str, ...], planar: bool) -> TaskSpace:
+    return TaskSpace(
+        components,
+        pose,
+        tuple(_V[c] for c in components),
+        tuple(_W[c] for c in components),
+        planar,
+    )
+
+
+TASK_SPACES: dict[Space, TaskSpace] = {
+    Space.POINT: _space((0, 1), ("x", "y"), True),
+    Space.PLANAR: _space((0, 1, 5), ("x", "y", "phi"), True),
+    Space.SPATIAL: _space((0, 1, 2, 3, 4, 5), ("x", "y", "z", *_QUATERNION), False),
+    Space.TRANSLATIONAL: _space((0, 1, 2), ("x", "y", "z"), False),
+    Space.SPHERICAL: _space((3, 4, 5), _QUATERNION, False),
+}
+
+
+@dataclass(frozen=True)
+class Pose:
+    """Position (m) and rotation matrix of a body, in the base frame or in leg axes."""
+
+    t: Array
+    R: Array
+
+
+ORIGIN = Pose(np.zeros(3), np.eye(3))
+"""Where a leg's chain begins, in its own axes."""
+
+
+def pose_at(space: Space, X: Sequence[float], centre: Vector3 | None) -> Pose:
+    """The pose that the platform coordinates state."""
+    eye = np.eye(3)
+    if space is Space.POINT:
+        return Pose(np.array([X[0], X[1], 0.0]), eye)
+    if space is Space.PLANAR:
+        return Pose(np.array([X[0], X[1], 0.0]), rotation_about((0.0, 0.0, 1.0), X[2]))
+    if space is Space.TRANSLATIONAL:
+        return Pose(np.array(X[:3]), eye)
+    if space is Space.SPHERICAL:
+        return Pose(np.array(centre), rotation_of_quaternion(X[:4]))
+    return Pose(np.array(X[:3]), rotation_of_quaternion(X[3:7]))
+
+
+def displaced(space: Space, X: Array, step: Array) -> Array:
+    """Platform coordinates moved by a small twist (components as in `TaskSpace`)."""
+    if not TASK_SPACES[space].has_quaternion:
+        return X + step
+    start = 3 if space is Space.SPATIAL else 0
+    spin = step[start : start + 3]
+    moved = X.copy()
+    moved[:start] += step[:start]
+    x, y, z, w = X[start : start + 4]
+    rate = np.array([[w, z, -y], [-z, w, x], [y, -x, w], [-x, -y, -z]])
+    quaternion = X[start : start + 4] + 0.5 * rate @ spin
+    moved[start : start + 4] = quaternion / np.linalg.norm(quaternion)
+    return moved
+
+
+def rotation_of_quaternion(quaternion: Sequence[float]) -> Array:
+    """The rotation matrix of a unit quaternion (x, y, z, w)."""
+    x, y, z, w = quaternion
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+def rotation_about(axis: Sequence[float] | Array, angle: float) -> Array:
+    """The rotation about a unit axis (Rodrigues' formula)."""
+    k = skew(np.asarray(axis, dtype=float))
+    result: Array = np.eye(3) + math.sin(angle) * k
+    return result + (1.0 - math.cos(angle)) * (k @ k)
+
+
+def skew(a: Array) -> Array:
+    """The matrix that multiplies b to a x b (Rule II)."""
+    return np.array([[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]])
+
+
+@dataclass(frozen=True)
+class ChainPose:
+    """A leg's chain of joints at given displacements, from where it begins.
+
+    Attributes:
+        joints: of the leg, n of them.
+        origins: of the joints, on the links before them (n vectors, m).
+        points: origins of the links that the joints move (n vectors, m).
+        axes: of the joints (n unit vectors).
+        rotations: of the base and of the links, n + 1.
+        tip: the platform joint on the last link (m).
+    """
+
+    joints: tuple[Joint, ...]
+    origins: tuple[Array, ...]
+    points: tuple[Array, ...]
+    axes: tuple[Array, ...]
+    rotations: tuple[Array, ...]
+    tip: Array
+
+    @property
+    def last(self) -> Array:
+        """The last link's rotation."""
+        return self.rotations[-1]
+
+    @property
+    def spins(self) -> Array:
+        """Angular velocity of the last link per joint rate, (3, n)."""
+        return np.array([a * j.turns for j, a in zip(self.joints, self.axes, strict=True)]).T
+
+    @property
+    def velocities(self) -> Array:
+        """Velocity of the tip per joint rate, (3, n) (method: the v_j)."""
+        columns = []
+        for joint, axis, origin in zip(self.joints, self.axes, self.origins, strict=True):
+            column = joint.advance * axis
+            if joint.turns:
+                column = column + np.cross(axis, self.tip - origin)
+            columns.append(column)
+        return np.array(columns).T
+
+
+def chain_pose(leg: Leg, q: Sequence[float] | Array, start: Pose = ORIGIN) -> ChainPose:
+    """The chain of a leg at displacements q; in leg axes, or from the pose of its base frame."""
+    point, rotation = start.t, start.R
+    origins, points, axes, rotations = [], [], [], [rotation]
+    for joint, x in zip(leg.joints, q, strict=True):
+        origin = point + rotation @ np.array(joint.offset)
+        axis = rotation @ np.array(joint.axis)
+        point = origin + joint.advance * float(x) * axis
+        if joint.turns:
+            rotation = rotation @ rotation_about(joint.axis, float(x))
+        origins.append(origin)
+        points.append(point)
+        axes.append(axis)
+        rotations.append(rotation)
+    tip = point + rotation @ np.array(leg.platform_joint.offset)
+    return ChainPose(leg.joints, tuple(origins), tuple(points), tuple(axes), tuple(rotations), tip)
+
+
+def base_of(leg: Leg) -> Pose:
+    """Where the chain of a leg begins, in the base frame."""
+    return Pose(np.array(leg.base_point), np.array(leg.base_frame))
