@@ -2,6 +2,7 @@
 
 from pne_sym.derivation.book import Book
 from pne_sym.derivation.equation import (
+    PLATFORM,
     Chapter,
     Condition,
     Coordinates,
@@ -14,12 +15,14 @@ from pne_sym.derivation.equation import (
     Output,
     Quantity,
     ReciprocalBasis,
+    Role,
     Trouble,
     names_in,
 )
 from pne_sym.derivation.parameters import ParameterField, ParameterTable
 
 __all__ = [
+    "PLATFORM",
     "Book",
     "Chapter",
     "Condition",
@@ -35,6 +38,7 @@ __all__ = [
     "ParameterTable",
     "Quantity",
     "ReciprocalBasis",
+    "Role",
     "Trouble",
     "names_in",
 ]

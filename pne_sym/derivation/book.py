@@ -21,6 +21,7 @@ from pne_sym.derivation.equation import (
     Output,
     Quantity,
     ReciprocalBasis,
+    Role,
     names_in,
 )
 from pne_sym.derivation.parameters import ParameterTable
@@ -59,7 +60,8 @@ class Book:
         """
         if quantity.name in self.notation:
             raise ValueError(f"the name {quantity.name!r} is already used")
-        self.notation[quantity.name] = quantity
+        leg_type = self._chapters[-1][2] if self._chapters else None
+        self.notation[quantity.name] = replace(quantity, leg_type=leg_type or "")
 
     def give(self, symbol: Any, frame: str, components: Sequence[Any], quantity: Quantity) -> Any:
         """Introduce a given vector, tensor or scalar with its components."""
@@ -85,6 +87,9 @@ class Book:
         conditions: Sequence[Condition] = (),
         symmetric: bool = False,
         parameter: bool = False,
+        role: Role | None = None,
+        joint: int = 0,
+        remainder_of: str = "",
     ) -> Any:
         """Append an equation that defines a new name; returns its symbol."""
         symbol: Any
@@ -94,7 +99,19 @@ class Book:
             symbol = TensorSymbol(name, symmetric)
         else:
             symbol, rhs = sp.Symbol(name, real=True), sp.sympify(rhs)
-        self.note_quantity(Quantity(name, latex, title, unit, body, parameter))
+        self.note_quantity(
+            Quantity(
+                name,
+                latex,
+                title,
+                unit,
+                body,
+                parameter,
+                role=role,
+                joint=joint,
+                remainder_of=remainder_of,
+            )
+        )
         prefix, _, _, _, equations = self._chapters[-1]
         equations.append(
             Equation(

@@ -44,6 +44,33 @@ class Law(enum.StrEnum):
     LUMPING = "lumped parameter"
 
 
+class Role(enum.StrEnum):
+    """What a quantity is in the mechanics, where other stages need to know it."""
+
+    POSITION = "position of the platform origin"
+    VELOCITY = "velocity of the platform origin"
+    ACCELERATION = "acceleration of the platform origin"
+    ROTATION = "rotation of the platform"
+    ANGULAR_VELOCITY = "angular velocity of the platform"
+    ANGULAR_ACCELERATION = "angular acceleration of the platform"
+    GRAVITY = "acceleration of gravity"
+    POINT = "from the leg's base point to its connection point"
+    POINT_VELOCITY = "velocity of the connection point"
+    POINT_ACCELERATION = "acceleration of the connection point"
+    COLLECTED_ACCELERATION = "that acceleration without its centripetal part"
+    BIAS = "acceleration of the connection point without joint accelerations"
+    DISPLACEMENT = "displacement of a joint"
+    RATE = "rate of a joint"
+    JOINT_ACCELERATION = "acceleration of a joint"
+    RECIPROCAL = "reciprocal vector of a joint"
+    RESOLVED = "vector beyond a joint, resolved along its link"
+    LEG_INERTIA = "coefficient of the acceleration in a leg's force"
+    LEG_BIAS = "remainder of a leg's force"
+
+
+_JOINT_STATE = (Role.DISPLACEMENT, Role.RATE, Role.JOINT_ACCELERATION)
+
+
 @dataclass(frozen=True)
 class Quantity:
     """What a name stands for.
@@ -56,6 +83,10 @@ class Quantity:
         body: name of the body in which the vector or tensor is naturally
             observed (a hint for the lowering, nothing else depends on it).
         parameter: the quantity is a parameter or made of parameters alone.
+        role: what it is in the mechanics, where other stages ask for it.
+        leg_type: the leg type that has it, or "" for the platform's.
+        joint: the joint that it belongs to, from 1; 0 for none.
+        remainder_of: the quantity whose remainder (Eq. 4) it is, or "".
     """
 
     name: str
@@ -64,6 +95,10 @@ class Quantity:
     unit: str = "-"
     body: str | None = None
     parameter: bool = False
+    role: Role | None = None
+    leg_type: str = ""
+    joint: int = 0
+    remainder_of: str = ""
 
 
 @dataclass(frozen=True)
@@ -79,6 +114,10 @@ class Given:
     symbol: Any
     frame: str
     components: tuple[Any, ...]
+
+
+PLATFORM = "platform"
+"""Name of the frame fixed in the platform."""
 
 
 @dataclass(frozen=True)
@@ -367,6 +406,18 @@ class Derivation:
         """All equations in order."""
         for chapter in self.chapters:
             yield from chapter.equations
+
+    def leg_state(self) -> Iterator[Quantity]:
+        """Scalars of a leg that are given: extra coordinates, what is found by iteration."""
+        defined = {e.name for e in self.equations()}
+        for quantity in self.notation.values():
+            if quantity.joint and quantity.role in _JOINT_STATE and quantity.name not in defined:
+                yield quantity
+
+    def with_role(self, role: Role) -> Quantity | None:
+        """The platform's quantity with a role, or None."""
+        found = (q for q in self.notation.values() if q.role is role and not q.leg_type)
+        return next(found, None)
 
     def definition(self, name: str) -> Equation:
         """The equation that defines a name.

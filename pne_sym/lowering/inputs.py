@@ -6,7 +6,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Coordinates, Derivation
+from pne_sym.derivation import PLATFORM, Derivation, Role
 from pne_sym.program.ir import Assignment, Check
 
 _AXES = "xyz"
@@ -17,13 +17,13 @@ def entry(vector: str, index: int) -> sp.Symbol:
     return sp.Symbol(f"{vector}_{index}", real=True)
 
 
-def unpack(coordinates: Coordinates) -> dict[str, tuple[list[Assignment], list[Check]]]:
+def unpack(derivation: Derivation) -> dict[str, tuple[list[Assignment], list[Check]]]:
     """By input vector: assignments that name its entries, and checks on them."""
-    pose, checks = _pose(coordinates)
+    pose, checks = _pose(derivation)
     return {
         "X": (pose, checks),
-        "V": (_twist(coordinates, "V", "t_dot", "omega"), []),
-        "A": (_twist(coordinates, "A", "t_ddot", "alpha"), []),
+        "V": (_twist(derivation, "V", Role.VELOCITY, Role.ANGULAR_VELOCITY), []),
+        "A": (_twist(derivation, "A", Role.ACCELERATION, Role.ANGULAR_ACCELERATION), []),
     }
 
 
@@ -31,32 +31,45 @@ def _symbol(name: str) -> sp.Symbol:
     return sp.Symbol(name, real=True)
 
 
-def _twist(coordinates: Coordinates, vector: str, linear: str, angular: str) -> list[Assignment]:
+def _components(derivation: Derivation, role: Role) -> tuple[Any, ...]:
+    """Components of the platform's vector with a role; zeros where it has none."""
+    quantity = derivation.with_role(role)
+    for given in derivation.givens:
+        if quantity is not None and given.symbol.name == quantity.name:
+            return given.components
+    return (sp.S.Zero,) * 3
+
+
+def _twist(derivation: Derivation, vector: str, linear: Role, angular: Role) -> list[Assignment]:
+    assert derivation.coordinates is not None
+    six = (*_components(derivation, linear), *_components(derivation, angular))
     return [
-        Assignment(
-            _symbol(f"{linear if c < 3 else angular}_{_AXES[c % 3]}"), entry(vector, k), vector
-        )
-        for k, c in enumerate(coordinates.components)
+        Assignment(six[c], entry(vector, k), vector)
+        for k, c in enumerate(derivation.coordinates.components)
     ]
 
 
-def _pose(coordinates: Coordinates) -> tuple[list[Assignment], list[Check]]:
+def _pose(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:
+    coordinates = derivation.coordinates
+    assert coordinates is not None
     assignments: list[Assignment] = []
     checks: list[Check] = []
+    position = _components(derivation, Role.POSITION)
     for k, name in enumerate(coordinates.pose):
         if name in _AXES:
-            assignments.append(Assignment(_symbol(f"t_{name}"), entry("X", k), "X"))
+            assignments.append(Assignment(position[_AXES.index(name)], entry("X", k), "X"))
+    rotation = next((f.rotation for f in derivation.frames if f.name == PLATFORM), None) or ()
     if coordinates.planar and "phi" in coordinates.pose:
         phi = entry("X", coordinates.pose.index("phi"))
-        assignments.append(Assignment(_symbol("R_xx"), sp.cos(phi), "X"))
-        assignments.append(Assignment(_symbol("R_yx"), sp.sin(phi), "X"))
+        assignments.append(Assignment(rotation[0], sp.cos(phi), "X"))
+        assignments.append(Assignment(rotation[3], sp.sin(phi), "X"))
     if coordinates.has_quaternion:
-        rotation, checks = _quaternion(coordinates.pose.index("qx"))
-        assignments.extend(rotation)
+        named, checks = _quaternion(coordinates.pose.index("qx"), rotation)
+        assignments.extend(named)
     return assignments, checks
 
 
-def _quaternion(first: int) -> tuple[list[Assignment], list[Check]]:
+def _quaternion(first: int, rotation: tuple[Any, ...]) -> tuple[list[Assignment], list[Check]]:
     """Rotation matrix of a quaternion of any length other than zero.
 
     A squared length that overflows leaves nothing of the scale: that is checked too.
@@ -90,29 +103,26 @@ def _quaternion(first: int) -> tuple[list[Assignment], list[Check]]:
         (xy + wz, 1 - (xx + zz), yz - wx),
         (xz - wy, yz + wx, 1 - (xx + yy)),
     )
-    for i, row in enumerate(rows):
-        for j, value in enumerate(row):
-            let(f"R_{_AXES[i]}{_AXES[j]}", value)
+    values = (value for row in rows for value in row)
+    made += [Assignment(r, value, "X") for r, value in zip(rotation, values, strict=True)]
     return made, [Check("invalid", value, sp.S.One, 2, "X") for value in (n, s)]
 
 
-def leg_inputs(derivation: Derivation, symbol: str, leg_type: str) -> tuple[str, tuple[int, ...]]:
+def leg_inputs(derivation: Derivation, name: str) -> tuple[str, tuple[int, ...]]:
     """Input vector, and index in it per leg, of a scalar that belongs to a leg.
 
     An extra coordinate (X), its rate (V) or acceleration (A), or a displacement that is
     found by iteration (q).
     """
-    coordinates = derivation.coordinates
+    coordinates, quantity = derivation.coordinates, derivation.notation[name]
     assert coordinates is not None
-    stem = symbol.split("_")
-    joint = int(stem[1])
-    info = next(t for t in derivation.leg_types if t.name == leg_type)
-    if stem[0] == "q":
-        return "q", tuple(coordinates.joints.index((leg, joint - 1)) for leg in info.indices)
+    info = next(t for t in derivation.leg_types if t.name == quantity.leg_type)
+    joints = [(leg, quantity.joint - 1) for leg in info.indices]
+    if joints[0] not in coordinates.extras:
+        return "q", tuple(coordinates.joints.index(joint) for joint in joints)
     vector, start = {
-        "y": ("X", len(coordinates.pose)),
-        "yd": ("V", len(coordinates.rates)),
-        "ydd": ("A", len(coordinates.rates)),
-    }[stem[0]]
-    places = [coordinates.extras.index((leg, joint - 1)) for leg in info.indices]
-    return vector, tuple(start + place for place in places)
+        Role.DISPLACEMENT: ("X", len(coordinates.pose)),
+        Role.RATE: ("V", len(coordinates.rates)),
+        Role.JOINT_ACCELERATION: ("A", len(coordinates.rates)),
+    }[quantity.role or Role.DISPLACEMENT]
+    return vector, tuple(start + coordinates.extras.index(joint) for joint in joints)

@@ -127,23 +127,13 @@ def _declare(derivation: Derivation, builder: Builder) -> None:
     for name, (leg_type, _) in table.branches.items():
         sign = builder.declare(sp.Symbol(name, real=True), Stage(Kind.PARAMETER_LEG, leg_type))
         builder.signs.add(sign)
-    defined = {e.name for e in derivation.equations()}
     for given in derivation.givens:
         _declare_state(builder, given.components)
     for frame in derivation.frames:
         _declare_state(builder, frame.rotation or ())
-    for name in derivation.notation:
-        if name not in defined and name.startswith(("y_", "yd_", "ydd_", "q_")):
-            leg_type = _leg_type_of(derivation, name)
-            builder.declare(sp.Symbol(name, real=True), Stage(Kind.STATE_LEG, leg_type))
-
-
-def _leg_type_of(derivation: Derivation, name: str) -> str:
-    if len(derivation.leg_types) == 1:
-        return derivation.leg_types[0].name
-    return next(
-        t.name for t in derivation.leg_types if name.endswith(f"_{t.name}") or f"_{t.name}_" in name
-    )
+    for quantity in derivation.leg_state():
+        symbol = sp.Symbol(quantity.name, real=True)
+        builder.declare(symbol, Stage(Kind.STATE_LEG, quantity.leg_type))
 
 
 def _declare_state(builder: Builder, components: Iterable[Any]) -> None:
@@ -310,7 +300,7 @@ def _function(
 ) -> Function:
     assert derivation.coordinates is not None
     inputs, assignments, checks = [], [], []
-    for vector, (named, conditions) in unpack(derivation.coordinates).items():
+    for vector, (named, conditions) in unpack(derivation).items():
         chain = _closure_of(named, {a.target for a in named if a.target in sliced.used})
         own = [a for a in named if a.target in chain]
         if own:
@@ -321,7 +311,7 @@ def _function(
     for symbol in sorted(sliced.used, key=lambda s: s.name):
         stage = builder.stage_of(symbol)
         if stage.kind is Kind.STATE_LEG and symbol not in builder.of:
-            vector, indices = leg_inputs(derivation, symbol.name, stage.leg_type)
+            vector, indices = leg_inputs(derivation, symbol.name)
             per_leg.setdefault(stage.leg_type, []).append(LegInput(symbol, vector, indices))
             inputs.append(vector)
     given = {s.name for s in sliced.used if s not in builder.of} | {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output
+from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output, Role
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_at_home
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
@@ -161,6 +161,7 @@ def _connection(book: Book, platform: PlatformMotion, g: LegGeometry) -> tuple[V
         unit="m",
         body="base",
         reference="Sec. 2.5, step 1.1",
+        role=Role.POINT,
     )
     x = S - g.offset[1]
     if not isinstance(x, VectorSymbol):

@@ -19,7 +19,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Condition, Law, Quantity, Trouble
+from pne_sym.derivation import Book, Condition, Law, Quantity, Role, Trouble
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, ZeroVector, vector_sum
 
@@ -110,6 +110,8 @@ def given_displacements(book: Book, g: LegGeometry, reasons: dict[int, str]) -> 
                 f"q_{{{j}}}",
                 f"displacement of joint {j}, by iteration on the loop closure",
                 "rad" if g.turns(j) else "m",
+                role=Role.DISPLACEMENT,
+                joint=j,
             )
         )
         solver.q[j] = sp.Symbol(name, real=True)
@@ -380,9 +382,9 @@ class _Solver:
         n, m = self._link_axes(j)
         u_n, u_m, along_axis = self._pattern(j, method, u)
         if u_n is None:
-            u_n = self._constant_of_link(f"un_{j}", Dot(u, n), of_u)
+            u_n = self._constant_of_link("un", j, Dot(u, n), of_u)
         if u_m is None:
-            u_m = self._constant_of_link(f"um_{j}", Dot(u, m), of_u)
+            u_m = self._constant_of_link("um", j, Dot(u, m), of_u)
         K = self._scalar(
             f"Kc_{j}",
             u_n * A + u_m * B,
@@ -408,7 +410,7 @@ class _Solver:
         root = self._turned(j, K, N, C, method)
         x_n, x_m = u_n * C + u_m * root, u_m * C - u_n * root
         of_square = "m^2" if of_u == "m" else "-"
-        length2 = self._constant_of_link(f"uu_{j}", u_n**2 + u_m**2, of_square)
+        length2 = self._constant_of_link("uu", j, u_n**2 + u_m**2, of_square)
         resolved: Vector = self.book.define(
             g.name(f"xi_{j}"),
             (x_n / length2) * n + (x_m / length2) * m + Dot(e, x) * e,
@@ -417,6 +419,8 @@ class _Solver:
             Law.LOOP_CLOSURE,
             unit=of_x,
             body=g.frame("axes", j),
+            role=Role.RESOLVED,
+            joint=j,
         )
         return resolved
 
@@ -503,20 +507,19 @@ class _Solver:
                 return tuple(sp.S.Zero if z else None for z in zero)  # type: ignore[return-value]
         return (None, None, None)
 
-    def _constant_of_link(self, stem: str, rhs: Any, unit: str) -> Any:
+    def _constant_of_link(self, kind: str, j: int, rhs: Any, unit: str) -> Any:
         """A scalar made of parameters, and of extra coordinates where joints beyond have them."""
         if rhs.is_number or isinstance(rhs, sp.Symbol):
             return rhs
-        kind, j = stem.split("_")
         latex, title = _CONSTANTS[kind]
         return self.book.define(
-            self.g.name(stem),
+            self.g.name(f"{kind}_{j}"),
             rhs,
             rf"{latex}_{{{j}}}",
             title.format(j=j),
             Law.LUMPING,
             unit=unit,
-            parameter=not any(self.g.is_extra(k) for k in range(int(j) + 1, self.g.count + 1)),
+            parameter=not any(self.g.is_extra(k) for k in range(j + 1, self.g.count + 1)),
         )
 
     def _branch_symbol(self, j: int) -> sp.Symbol:
@@ -557,6 +560,8 @@ class _Solver:
             f"displacement of joint {j}",
             Law.LOOP_CLOSURE,
             unit="rad",
+            role=Role.DISPLACEMENT,
+            joint=j,
         )
 
     def _direct(self, j: int, x: Vector) -> Vector:
@@ -571,7 +576,7 @@ class _Solver:
             return x
         A, B = Dot(reference, x), Dot(across, x)
         along, aside = Dot(tip, n), Dot(tip, m)
-        length2 = self._constant_of_link(f"uu_{j}", along**2 + aside**2, "m^2")
+        length2 = self._constant_of_link("uu", j, along**2 + aside**2, "m^2")
         self.methods[j] = "direct"
         if not self.constrained:
             self._cosine_sine(
@@ -615,6 +620,8 @@ class _Solver:
                 f"y_{{{j}}}",
                 f"extra coordinate: displacement of joint {j}",
                 "rad" if g.turns(j) else "m",
+                role=Role.DISPLACEMENT,
+                joint=j,
             )
         )
         if g.turns(j):
@@ -668,6 +675,8 @@ class _Solver:
                 f"displacement of joint {j}",
                 Law.LOOP_CLOSURE,
                 unit=unit,
+                role=Role.DISPLACEMENT,
+                joint=j,
             )
             return
         centre, tip = u, value
@@ -703,6 +712,8 @@ class _Solver:
             f"displacement of joint {j}",
             Law.LOOP_CLOSURE,
             unit=unit,
+            role=Role.DISPLACEMENT,
+            joint=j,
         )
 
     def _numeric(self, j: int, reason: str = "") -> None:

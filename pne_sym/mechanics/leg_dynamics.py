@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, ParameterField, Quantity
+from pne_sym.derivation import Book, Law, ParameterField, Quantity, Role
 from pne_sym.mechanics.composite import CompositeWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import MotionWriter
@@ -632,6 +632,7 @@ class DynamicsWriter:
                 body=frame,
                 symmetric=True,
                 reference="Eq. 4",
+                role=Role.LEG_INERTIA,
             )
 
     def _velocity_terms(self, result: LegDynamics) -> None:
@@ -648,6 +649,7 @@ class DynamicsWriter:
                 unit="N",
                 body=self.k.tip_frame(),
                 reference="Eq. 4",
+                role=Role.LEG_BIAS,
             )
 
     def _moment_balance(self, gamma: dict[int, Any]) -> Any:

@@ -6,12 +6,13 @@ Reference: sections 2.2, 2.3 and 2.5.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis
+from pne_sym.derivation import Book, Law, Quantity, ReciprocalBasis, Role
 from pne_sym.mechanics.completion import Freedoms, LeftOut, completed_wrenches
 from pne_sym.mechanics.constraints import (
     directions_left_out,
@@ -70,6 +71,22 @@ _TENSOR = (
     r"The acceleration tensor saves work: "
     r"$`\mathbf B_j\,\mathbf r=\boldsymbol\alpha_j\times\mathbf r+\mathbf W_j\,\mathbf r`$."
 )
+
+
+@dataclass(frozen=True)
+class _Screw:
+    """A column of a leg's system: a joint's freedom, or a wrench that the freedoms leave out.
+
+    Attributes:
+        stem, latex: of the vector reciprocal to it.
+        turns: its displacement is an angle.
+        joint: from 1; 0 for a wrench.
+    """
+
+    stem: str
+    latex: str
+    turns: bool = False
+    joint: int = 0
 
 
 class MotionWriter:
@@ -170,10 +187,12 @@ class MotionWriter:
         freedoms = sum(not self.g.is_extra(i) for i in range(1, self.g.count + 1))
         if freedoms < (2 if self.space.planar else 3) + len(self.g.pairs):
             return ()
-        equations = {e.name: e for e in self.book.all_equations()}
-        while isinstance(x, VectorSymbol) and x.name in equations and x.name.startswith("xi_"):
-            x = self.x[int(x.name.removeprefix("xi_").split("_")[0])]
-        return (x,) if isinstance(x, VectorSymbol) else ()
+        while isinstance(x, VectorSymbol):
+            quantity = self.book.notation[x.name]
+            if quantity.role is not Role.RESOLVED:
+                return (x,)
+            x = self.x[quantity.joint]
+        return ()
 
     # ---- rates -----------------------------------------------------------------------
 
@@ -189,6 +208,7 @@ class MotionWriter:
             unit="m/s",
             reference="Sec. 2.5, step 1.1",
             body="base",
+            role=Role.POINT_VELOCITY,
         )
         turning = [j for j in range(1, g.count + 1) if g.turns(j)]
         self.spans = {group: self.span(group) for group in [0, *turning]}
@@ -247,16 +267,14 @@ class MotionWriter:
             scales.append(sp.S.One)
             for row, amount in zip(rows, wrench.amounts, strict=True):
                 row.append(amount)
-        names = [*(f"w_{j}" for j in joints), *(f"wn_{k + 1}" for k in range(missing))]
-        latexes = [
-            *(rf"\mathbf w_{{{j}}}" for j in joints),
-            *(rf"\mathbf w_{{c{k + 1}}}" for k in range(missing)),
+        screws = [
+            *(_Screw(f"w_{j}", rf"\mathbf w_{{{j}}}", g.turns(j), j) for j in joints),
+            *(_Screw(f"wn_{k}", rf"\mathbf w_{{c{k}}}") for k in range(1, missing + 1)),
         ]
-        turns = [*map(g.turns, joints), *(False for _ in wrenches)]
         duals, moment_duals = (
-            self._define_wrenches(vectors, rows, names, latexes, turns)
+            self._define_wrenches(vectors, rows, screws)
             if rows
-            else (self._define_duals(vectors, names, latexes, turns), [])
+            else (self._define_duals(vectors, screws), [])
         )
         motion.w = dict(zip(joints, duals, strict=False))
         for j, amounts in zip(joints, moment_duals, strict=False):
@@ -271,6 +289,8 @@ class MotionWriter:
                 unit=_MOMENT_PART[g.turns(j)],
                 body=self.tip_frame(),
                 reference="Sec. 2.2, joint table",
+                role=Role.RECIPROCAL,
+                joint=j,
             )
         frames = tuple(dict.fromkeys(g.frame("axes", g.group[j]) for j in range(g.count, -1, -1)))
         self.book.bases.append(
@@ -302,39 +322,36 @@ class MotionWriter:
             )
 
     def _define_wrenches(
-        self,
-        vectors: list[Any],
-        rows: list[list[Any]],
-        names: list[str],
-        latexes: list[str],
-        turns: list[bool],
+        self, vectors: list[Any], rows: list[list[Any]], screws: list[_Screw]
     ) -> tuple[list[Any], list[list[Any]]]:
         """Reciprocal wrenches where the leg transmits moments."""
         book, g = self.book, self.g
-        screws = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
+        columns = sp.Tuple(*vectors), sp.Tuple(*(sp.Tuple(*row) for row in rows))
         duals, moments = [], []
-        for k in range(len(vectors)):
+        for k, screw in enumerate(screws):
             duals.append(
                 book.define(
-                    g.name(names[k]),
-                    DualVector(sp.Integer(k), *screws),
-                    latexes[k],
+                    g.name(screw.stem),
+                    DualVector(sp.Integer(k), *columns),
+                    screw.latex,
                     f"force part of reciprocal wrench {k + 1}",
                     Law.RECIPROCITY,
-                    unit=_FORCE_PART[turns[k]],
+                    unit=_FORCE_PART[screw.turns],
                     body=self.tip_frame(),
                     reference="Sec. 2.2, joint table",
+                    role=Role.RECIPROCAL,
+                    joint=screw.joint,
                 )
             )
             moments.append(
                 [
                     book.define(
-                        g.name(f"m{i + 1}_{names[k]}"),
-                        DualScalar(sp.Integer(k), sp.Integer(i), *screws),
+                        g.name(f"m{i + 1}_{screw.stem}"),
+                        DualScalar(sp.Integer(k), sp.Integer(i), *columns),
                         f"m_{{{k + 1}{i + 1}}}",
                         f"moment part {i + 1} of reciprocal wrench {k + 1}",
                         Law.RECIPROCITY,
-                        unit=_MOMENT_PART[turns[k]],
+                        unit=_MOMENT_PART[screw.turns],
                         reference="Sec. 2.2, joint table",
                     )
                     for i in range(len(rows))
@@ -342,9 +359,7 @@ class MotionWriter:
             )
         return duals, moments
 
-    def _define_duals(
-        self, vectors: list[Any], names: list[str], latexes: list[str], turns: list[bool]
-    ) -> list[Any]:
+    def _define_duals(self, vectors: list[Any], screws: list[_Screw]) -> list[Any]:
         book, g = self.book, self.g
         duals = []
         planar = len(vectors) == 2
@@ -353,18 +368,20 @@ class MotionWriter:
             others = [(vectors[1], normal), (normal, vectors[0])]
         else:
             others = [(vectors[(k + 1) % 3], vectors[(k + 2) % 3]) for k in range(3)]
-        for k, vector in enumerate(vectors):
+        for k, (vector, screw) in enumerate(zip(vectors, screws, strict=True)):
             across = Cross(*others[k])
             duals.append(
                 book.define(
-                    g.name(names[k]),
+                    g.name(screw.stem),
                     across / Dot(vector, across),
-                    latexes[k],
+                    screw.latex,
                     f"reciprocal vector {k + 1}",
                     Law.RECIPROCITY,
-                    unit=_FORCE_PART[turns[k]],
+                    unit=_FORCE_PART[screw.turns],
                     body=self.tip_frame(),
                     reference="Sec. 2.3",
+                    role=Role.RECIPROCAL,
+                    joint=screw.joint,
                 )
             )
         return duals
@@ -395,6 +412,8 @@ class MotionWriter:
                     rf"\dot y_{{{j}}}",
                     f"rate of extra joint {j}",
                     "rad/s" if g.turns(j) else "m/s",
+                    role=Role.RATE,
+                    joint=j,
                 )
             )
             motion.qd[j] = sp.Symbol(name, real=True)
@@ -429,6 +448,8 @@ class MotionWriter:
                 f"rate of joint {j}",
                 Law.RECIPROCITY,
                 unit="rad/s" if g.turns(j) else "m/s",
+                role=Role.RATE,
+                joint=j,
             )
         self._angular_velocities()
 
@@ -503,6 +524,7 @@ class MotionWriter:
             unit="m/s^2",
             body="base",
             reference="Eq. 23",
+            role=Role.COLLECTED_ACCELERATION,
         )
         motion.unknowns.append(motion.a_p)
         writer = LinearWriter(book, g, motion)
@@ -516,6 +538,7 @@ class MotionWriter:
             body="base",
             reference="Eq. 23",
             forms=self._platform_form(),
+            role=Role.POINT_ACCELERATION,
         )
         motion.known[motion.S_ddot] = linear_form(
             motion.a_p + motion.u_1, motion.unknowns, motion.known
@@ -581,6 +604,7 @@ class MotionWriter:
             body=self.tip_frame(),
             forms=(vector_sum(forms),),
             reference="Sec. 2.2",
+            role=Role.BIAS,
         )
         return named
 
@@ -606,6 +630,8 @@ class MotionWriter:
                     rf"\ddot y_{{{j}}}",
                     f"acceleration of extra joint {j}",
                     "rad/s^2" if g.turns(j) else "m/s^2",
+                    role=Role.JOINT_ACCELERATION,
+                    joint=j,
                 )
             )
             motion.ydd[j] = motion.qdd[j] = sp.Symbol(name, real=True)
@@ -647,6 +673,8 @@ class MotionWriter:
                 unit="rad/s^2" if g.turns(j) else "m/s^2",
                 coefficient_latex=rf"\mathbf w_{{{j}}}",
                 reference="Eqs. 8, 9, 16",
+                role=Role.JOINT_ACCELERATION,
+                joint=j,
             )
 
     def _orientation_bias(self) -> list[Any]:

@@ -14,7 +14,7 @@ from typing import Any
 
 import sympy as sp
 
-from pne_sym.derivation import Book, Law
+from pne_sym.derivation import Book, Law, Role
 from pne_sym.mechanics.completion import LeftOut
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.vector import (
@@ -95,12 +95,6 @@ _PER_ACCELERATION = {
 }
 
 
-def _mark(unknown: Any) -> str:
-    """How a coefficient names its unknown: y_3 for an extra coordinate, else alpha."""
-    stem = unknown.name.split("_")
-    return f"y_{stem[1]}" if stem[0] == "ydd" else r"\boldsymbol\alpha"
-
-
 class LinearWriter:
     """Defines quantities that depend on the acceleration, with their linear forms."""
 
@@ -125,6 +119,8 @@ class LinearWriter:
         reference: str = "",
         collected: bool = True,
         accelerated: Any = None,
+        role: Role | None = None,
+        joint: int = 0,
     ) -> Any:
         """Define x = rhs, its coefficients and its remainder; returns x.
 
@@ -140,7 +136,17 @@ class LinearWriter:
             other = linear_form(accelerated, motion.unknowns, motion.known)
             form = replace(other, remainder=form.remainder)
         symbol = book.define(
-            name, rhs, latex, title, law, unit=unit, body=body, forms=forms, reference=reference
+            name,
+            rhs,
+            latex,
+            title,
+            law,
+            unit=unit,
+            body=body,
+            forms=forms,
+            reference=reference,
+            role=role,
+            joint=joint,
         )
         words = latex, coefficient_latex, title
         coefficients = {
@@ -162,6 +168,7 @@ class LinearWriter:
                 forms=rest_forms,
                 expanded=rhs,
                 reference="Sec. 2.3, Eq. 4",
+                remainder_of=name,
             )
         motion.known[symbol] = LinearForm(coefficients, remainder)
         if collected:
@@ -169,6 +176,11 @@ class LinearWriter:
         else:
             book.collect_no_coefficients(name)
         return symbol
+
+    def _mark(self, unknown: Any) -> str:
+        """How a coefficient names its unknown: y_3 for an extra coordinate, else alpha."""
+        joint = self.book.notation[unknown.name].joint
+        return f"y_{joint}" if joint else r"\boldsymbol\alpha"
 
     def _unit_of(self, unknown: Any) -> str:
         """Unit of an acceleration that is collected."""
@@ -201,7 +213,7 @@ class LinearWriter:
         return self.book.define(
             f"d_{name}" if first else f"d{k}_{name}",
             value,
-            coefficient_latex if first else f"{latex}^{{({_mark(unknown)})}}",
+            coefficient_latex if first else f"{latex}^{{({self._mark(unknown)})}}",
             f"coefficient of the acceleration in: {title}",
             Law.RULES,
             body=body,

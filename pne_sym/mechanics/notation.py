@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pne_sym.derivation import Derivation, names_in
+from pne_sym.derivation import Derivation, Quantity, Role, names_in
 from pne_sym.model.entry import nearest
 from pne_sym.model.errors import SpecError, show
 from pne_sym.model.manipulator import Manipulator
@@ -19,17 +19,28 @@ from pne_sym.model.symbols import split_symbol
 from pne_sym.vector import TensorSymbol, VectorSymbol
 
 # Quantities whose symbols stand in the report's own sentences and statements.
-_COMMON = frozenset("t t_dot t_ddot omega alpha g a_p S S_dot S_ddot bias".split())
+_COMMON = frozenset(
+    (
+        Role.POSITION,
+        Role.VELOCITY,
+        Role.ACCELERATION,
+        Role.ANGULAR_VELOCITY,
+        Role.ANGULAR_ACCELERATION,
+        Role.GRAVITY,
+        Role.POINT,
+        Role.POINT_VELOCITY,
+        Role.POINT_ACCELERATION,
+        Role.COLLECTED_ACCELERATION,
+        Role.BIAS,
+    )
+)
 # Symbols that mean the same in every report, though no quantity of a derivation has them.
 _TAKEN = (
     r"\mathbf{E} \mathbf{M} \mathbf{Z} \mathbf{H} \mathbf{H}_{k} \mathbf{F} \mathbf{A} \mathbf{T}"
     r" \boldsymbol\tau \boldsymbol\lambda \tau \lambda X V i j"
 ).split()
-# The name of a displacement, and the names of its derivatives.
-_DERIVATIVES = (
-    (re.compile(r"q_(\d.*)"), (r"qd_\1", r"qdd_\1")),
-    (re.compile(r"y_(\d+)_extra(.*)"), (r"yd_\1\2", r"ydd_\1\2")),
-)
+# What follows a displacement, and the dots that it then has.
+_DERIVATIVES = {Role.RATE: "dot", Role.JOINT_ACCELERATION: "ddot"}
 
 
 @dataclass(frozen=True)
@@ -91,12 +102,13 @@ def with_symbols(
     following: dict[str, Symbol] = {}
     own: dict[str, Symbol] = {}
     for name, text in manipulator.symbols:
-        _check_name(manipulator, name, places.keys() & derivation.notation.keys())
+        _check_name(manipulator, name, derivation, places.keys() & derivation.notation.keys())
         parts = split_symbol(text)
         assert parts is not None, text
         mark = Mark(*parts, bold=name in bold)
-        following |= {n: Symbol(latex, name) for n, latex in _following(name, mark)}
-        own |= {n: Symbol(latex, name) for n, latex in _itself(name, mark)}
+        quantity = derivation.notation[name]
+        following |= {n: Symbol(latex, name) for n, latex in _following(derivation, quantity, mark)}
+        own |= {n: Symbol(latex, name) for n, latex in _itself(derivation, name, mark)}
     changed = following | own
     notation = {
         name: replace(quantity, latex=changed[name].latex) if name in changed else quantity
@@ -111,7 +123,9 @@ def with_symbols(
     return replace(derivation, notation=notation)
 
 
-def _check_name(manipulator: Manipulator, name: str, known: Collection[str]) -> None:
+def _check_name(
+    manipulator: Manipulator, name: str, derivation: Derivation, known: Collection[str]
+) -> None:
     where = f"symbols.{name}"
     if name not in known:
         raise SpecError(
@@ -120,24 +134,34 @@ def _check_name(manipulator: Manipulator, name: str, known: Collection[str]) -> 
             f"no quantity {show(name)}{nearest(name, known)}",
             "a name that occurs in the derivation",
         )
-    if name in _COMMON or any(name.startswith(f"{common}_") for common in ("S", "a_p", "bias")):
+    quantity = derivation.notation[name]
+    common = derivation.notation.get(quantity.remainder_of, quantity)
+    if common.role in _COMMON:
         raise SpecError(
             manipulator.name, where, "its symbol is the same in every report", "no such field"
         )
 
 
-def _itself(name: str, mark: Mark, dots: str = "") -> Iterator[tuple[str, str]]:
+def _itself(
+    derivation: Derivation, name: str, mark: Mark, dots: str = ""
+) -> Iterator[tuple[str, str]]:
     """A quantity and its remainder."""
     yield name, mark.latex(dots)
-    yield f"{name}_o", rf"{mark.latex(dots)}^{{\circ}}"
+    for quantity in derivation.notation.values():
+        if quantity.remainder_of == name:
+            yield quantity.name, rf"{mark.latex(dots)}^{{\circ}}"
 
 
-def _following(name: str, mark: Mark) -> Iterator[tuple[str, str]]:
+def _following(
+    derivation: Derivation, displacement: Quantity, mark: Mark
+) -> Iterator[tuple[str, str]]:
     """The derivatives of a displacement."""
-    for pattern, derivatives in _DERIVATIVES:
-        if match := pattern.fullmatch(name):
-            for dots, derivative in zip(("dot", "ddot"), derivatives, strict=True):
-                yield from _itself(match.expand(derivative), mark, dots)
+    if displacement.role is not Role.DISPLACEMENT:
+        return
+    owner = displacement.leg_type, displacement.joint
+    for quantity in derivation.notation.values():
+        if (quantity.leg_type, quantity.joint) == owner and quantity.role in _DERIVATIVES:
+            yield from _itself(derivation, quantity.name, mark, _DERIVATIVES[quantity.role])
 
 
 def _refuse_collision(

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
+from pne_sym.derivation import PLATFORM, Book, Frame, Law, ParameterField, Quantity, Role
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import (
@@ -54,7 +54,7 @@ def introduce_platform(book: Book, manipulator: Manipulator, space: TaskSpace) -
     """Introduce what is given of the platform, and the tensor of its spin."""
     book.frames.append(Frame("base", None))
     rotation = _rotation(space)
-    book.frames.append(Frame("platform", "base", rotation))
+    book.frames.append(Frame(PLATFORM, "base", rotation))
     vectors = _motion(book, manipulator, space)
     spin: Any = ZeroTensor
     tensor: Any = ZeroTensor
@@ -117,7 +117,7 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
     axes = "xyz"
     given: dict[str, Vector] = {}
 
-    def give(stem: str, latex: str, meaning: str, unit: str, active: bool, first: int) -> None:
+    def give(stem: str, latex: str, role: Role, unit: str, active: bool, first: int) -> None:
         if not active:
             given[stem] = ZeroVector
             return
@@ -129,12 +129,12 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
         ]
         symbol = VectorSymbol(stem)
         given[stem] = book.give(
-            symbol, "base", components, Quantity(stem, latex, meaning, unit, "base")
+            symbol, "base", components, Quantity(stem, latex, role.value, unit, "base", role=role)
         )
 
     linear, angular = space.translates, space.rotates
     if linear:
-        give("t", r"\mathbf t", "position of the platform origin", "m", True, 0)
+        give("t", r"\mathbf t", Role.POSITION, "m", True, 0)
     else:
         centre = book.parameters.add(
             ParameterField(
@@ -151,14 +151,20 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
             VectorSymbol("t"),
             "base",
             centre,
-            Quantity("t", r"\mathbf t", "fixed centre of rotation", "m", "base", parameter=True),
+            Quantity(
+                "t",
+                r"\mathbf t",
+                "fixed centre of rotation",
+                "m",
+                "base",
+                parameter=True,
+                role=Role.POSITION,
+            ),
         )
-    give("t_dot", r"\dot{\mathbf t}", "velocity of the platform origin", "m/s", linear, 0)
-    give("t_ddot", r"\ddot{\mathbf t}", "acceleration of the platform origin", "m/s^2", linear, 0)
-    give("omega", r"\boldsymbol\omega", "angular velocity of the platform", "rad/s", angular, 3)
-    give(
-        "alpha", r"\boldsymbol\alpha", "angular acceleration of the platform", "rad/s^2", angular, 3
-    )
+    give("t_dot", r"\dot{\mathbf t}", Role.VELOCITY, "m/s", linear, 0)
+    give("t_ddot", r"\ddot{\mathbf t}", Role.ACCELERATION, "m/s^2", linear, 0)
+    give("omega", r"\boldsymbol\omega", Role.ANGULAR_VELOCITY, "rad/s", angular, 3)
+    give("alpha", r"\boldsymbol\alpha", Role.ANGULAR_ACCELERATION, "rad/s^2", angular, 3)
     gravity = book.parameters.add(
         ParameterField(
             "gravity",
@@ -175,7 +181,15 @@ def _motion(book: Book, manipulator: Manipulator, space: TaskSpace) -> dict[str,
         VectorSymbol("g"),
         "base",
         gravity,
-        Quantity("g", r"\mathbf g", "acceleration of gravity", "m/s^2", "base", parameter=True),
+        Quantity(
+            "g",
+            r"\mathbf g",
+            Role.GRAVITY.value,
+            "m/s^2",
+            "base",
+            parameter=True,
+            role=Role.GRAVITY,
+        ),
     )
     return given
 

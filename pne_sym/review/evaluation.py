@@ -211,7 +211,7 @@ class State:
         if leg is None:
             raise KeyError(name)
         leg_type = self.structure.type_of_leg[leg]
-        vector, indices = leg_inputs(derivation, name, leg_type)
+        vector, indices = leg_inputs(derivation, name)
         return float(self.vectors[vector][indices[self.structure.legs[leg_type].index(leg)]])
 
     def _reduced(self, expr: Any, leg: int | None) -> Any:
@@ -282,12 +282,8 @@ def _symbol_like(expr: Any, name: str) -> Any:
 
 def _inputs(derivation: Derivation, vectors: Mapping[str, Any]) -> dict[str, float]:
     """Scalars that the derivation names in X, V and A."""
-    assert derivation.coordinates is not None
     values = {f"{v}_{k}": float(e) for v, entries in vectors.items() for k, e in enumerate(entries)}
-    for assignments, _ in unpack(derivation.coordinates).values():
+    for assignments, _ in unpack(derivation).values():
         for a in assignments:
             values[str(a.target)] = float(evaluate(sp.sympify(a.expr), values))
-    for stem in ("t", "t_dot", "t_ddot", "omega", "alpha"):
-        for axis in "xyz":
-            values.setdefault(f"{stem}_{axis}", 0.0)
     return values

@@ -14,7 +14,7 @@ import sympy as sp
 
 from pne_sym.backends.latex import LatexPrinter
 from pne_sym.backends.terms import Term
-from pne_sym.derivation import Derivation, Equation, Law, names_in
+from pne_sym.derivation import Derivation, Equation, Law, Role
 from pne_sym.vector import Dot, LinearForm, Tensor, Vector, VectorSymbol, linear_form
 from pne_sym.vector.linear import NotLinearError
 
@@ -59,10 +59,13 @@ def collect(derivation: Derivation) -> Collected:
 
 def _unknowns(derivation: Derivation, equations: list[Equation], leg_type: str) -> Iterator[Any]:
     """Accelerations: of the connection point, of the platform's turning, of extra joints."""
-    yield from (e.lhs for e in equations if e.name in ("a_p", f"a_p_{leg_type}"))
-    yield from (g.symbol for g in derivation.givens if g.symbol.name == "alpha")
-    names = sorted({n for e in equations for n in names_in(e.rhs) if n.startswith("ydd_")})
-    yield from (sp.Symbol(name, real=True) for name in names)
+    notation = derivation.notation
+    yield from (e.lhs for e in equations if notation[e.name].role is Role.COLLECTED_ACCELERATION)
+    turning = derivation.with_role(Role.ANGULAR_ACCELERATION)
+    yield from (g.symbol for g in derivation.givens if turning and g.symbol.name == turning.name)
+    for quantity in derivation.leg_state():
+        if quantity.leg_type == leg_type and quantity.role is Role.JOINT_ACCELERATION:
+            yield sp.Symbol(quantity.name, real=True)
 
 
 def _parts(equations: list[Equation], at: int) -> list[Equation]:

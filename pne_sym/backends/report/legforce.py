@@ -10,7 +10,7 @@ from pne_sym.backends.report.collected import Collected, collected_terms, rename
 from pne_sym.backends.report.markdown import display, inline
 from pne_sym.backends.report.view import Statement
 from pne_sym.backends.terms import Term
-from pne_sym.derivation import Derivation, Equation, Law, Output
+from pne_sym.derivation import Derivation, Equation, Law, Output, Role
 from pne_sym.vector import LinearForm, linear_form
 
 _FORCE = r"\mathbf F"
@@ -76,7 +76,7 @@ def _applied(
 ) -> Iterator[Term]:
     """What actuators and constraints give: w tau, n lambda."""
     for output in _outputs(derivation, leg_type, "drive", first):
-        joint = _joint_of(output)
+        joint = _joint_of(derivation, output)
         effort = rf"\tau_{joint}" if joint else r"\tau"
         yield Term(rf"{printer.factor(output.value)}\,{effort}")
     normals = _outputs(derivation, leg_type, "constraint_direction", first)
@@ -94,10 +94,10 @@ def _outputs(derivation: Derivation, leg_type: str, array: str, first: int) -> l
     ]
 
 
-def _joint_of(output: Output) -> str:
-    """Number of the joint that a reciprocal vector belongs to, from its name."""
-    parts = str(getattr(output.value, "name", "")).split("_")
-    return parts[1] if len(parts) > 1 and parts[1].isdigit() else ""
+def _joint_of(derivation: Derivation, output: Output) -> str:
+    """Number of the joint that a reciprocal vector belongs to, or nothing."""
+    quantity = derivation.notation.get(str(getattr(output.value, "name", "")))
+    return str(quantity.joint) if quantity and quantity.joint else ""
 
 
 def _definition(derivation: Derivation, symbol: Any) -> Equation | None:
@@ -122,11 +122,12 @@ def closed_form(
 
 
 def _final(derivation: Derivation, leg_type: str) -> list[Equation]:
-    """The equations of Q and U: named by the rules, but no part of another equation."""
+    """The equations of Q and U."""
+    wanted = (Role.LEG_INERTIA, Role.LEG_BIAS)
     return [
         e
         for c in derivation.chapters
         if c.leg_type == leg_type
         for e in c.equations
-        if e.law is Law.RULES and e.expanded is None and e.reference.startswith("Eq. 4")
+        if derivation.notation[e.name].role in wanted
     ]
