@@ -8,6 +8,7 @@ from typing import Any
 
 import sympy as sp
 
+from pne_sym.derivation.dimensions import Dimensions
 from pne_sym.derivation.equation import (
     Chapter,
     Condition,
@@ -26,6 +27,7 @@ from pne_sym.derivation.equation import (
 )
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import LinearForm, Tensor, TensorSymbol, Vector, VectorSymbol
+from pne_sym.vector.dimensions import NONE, dimension
 
 
 class Book:
@@ -77,7 +79,7 @@ class Book:
         title: str,
         law: Law,
         *,
-        unit: str = "-",
+        unit: str = "",
         reference: str = "",
         body: str | None = None,
         forms: Sequence[Any] = (),
@@ -91,7 +93,10 @@ class Book:
         joint: int = 0,
         remainder_of: str = "",
     ) -> Any:
-        """Append an equation that defines a new name; returns its symbol."""
+        """Append an equation that defines a new name; returns its symbol.
+
+        Without a unit the quantity has that of its right-hand side.
+        """
         symbol: Any
         if isinstance(rhs, Vector):
             symbol = VectorSymbol(name)
@@ -104,7 +109,7 @@ class Book:
                 name,
                 latex,
                 title,
-                unit,
+                unit or self.unit_of(rhs),
                 body,
                 parameter,
                 role=role,
@@ -129,6 +134,15 @@ class Book:
             )
         )
         return symbol
+
+    def unit_of(self, rhs: Any) -> str:
+        """The unit of an expression in names that stand before it, from their units.
+
+        Raises:
+            DimensionError: terms of a sum have different dimensions.
+        """
+        found = dimension(rhs, Dimensions(self.notation, self.parameters))
+        return found.unit if found else NONE.unit
 
     def collect(self, name: str, named: LinearForm, plain: LinearForm) -> None:
         """What the rules made of a quantity: by the names of the parts, and by what they stand for.

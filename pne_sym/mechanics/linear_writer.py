@@ -82,19 +82,6 @@ class LegMotion:
     named: dict[Any, Any] = field(default_factory=dict)
 
 
-# Unit of a quantity, and of the acceleration on which it depends -> unit of the coefficient.
-_PER_ACCELERATION = {
-    ("N", "m/s^2"): "kg",
-    ("N", "rad/s^2"): "kg m",
-    ("N m", "m/s^2"): "kg m",
-    ("N m", "rad/s^2"): "kg m^2",
-    ("m/s^2", "m/s^2"): "-",
-    ("m/s^2", "rad/s^2"): "m",
-    ("rad/s^2", "m/s^2"): "rad/m",
-    ("rad/s^2", "rad/s^2"): "-",
-}
-
-
 class LinearWriter:
     """Defines quantities that depend on the acceleration, with their linear forms."""
 
@@ -150,9 +137,7 @@ class LinearWriter:
         )
         words = latex, coefficient_latex, title
         coefficients = {
-            unknown: self._coefficient(
-                k, unknown, form, words, rhs, name=name, unit=unit, body=body
-            )
+            unknown: self._coefficient(k, unknown, form, words, rhs, name=name, body=body)
             for k, unknown in enumerate(form.coefficients)
         }
         remainder = form.remainder
@@ -182,13 +167,6 @@ class LinearWriter:
         joint = self.book.notation[unknown.name].joint
         return f"y_{joint}" if joint else r"\boldsymbol\alpha"
 
-    def _unit_of(self, unknown: Any) -> str:
-        """Unit of an acceleration that is collected."""
-        if unknown == self.motion.a_p:
-            return "m/s^2"
-        slides = [y for j, y in self.motion.ydd.items() if not self.g.turns(j)]
-        return "m/s^2" if unknown in slides else "rad/s^2"
-
     def _coefficient(
         self,
         k: int,
@@ -198,7 +176,6 @@ class LinearWriter:
         rhs: Any,
         *,
         name: str,
-        unit: str,
         body: str | None,
     ) -> Any:
         """Coefficient k of a form: by its name if it has one, else defined.
@@ -220,5 +197,4 @@ class LinearWriter:
             linear=form if first else None,
             expanded=rhs,
             reference="Sec. 2.3, Eq. 4",
-            unit=_PER_ACCELERATION[unit, self._unit_of(unknown)],
         )

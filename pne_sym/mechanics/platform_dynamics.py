@@ -507,7 +507,6 @@ class PlatformWriter:
                 latex,
                 "moment of the column's unit force about the platform origin",
                 Law.ASSEMBLY,
-                unit="m",
                 body="base",
                 reference="Eq. 34",
             )

@@ -22,7 +22,7 @@ def book() -> Book:
 
 
 def _meaning(symbol: Any) -> Quantity:
-    return Quantity(symbol.name, symbol.name, "given", "m")
+    return Quantity(symbol.name, symbol.name, "given", "-")
 
 
 def define(to: Book, name: str, rhs: Any, **more: Any) -> Any:
