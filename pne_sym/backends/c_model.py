@@ -5,11 +5,12 @@ from __future__ import annotations
 import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_parts import statements, symbols_of
+from pne_sym.backends.c_parts import statements
 from pne_sym.backends.c_text import CPrinter, c_name, comment, indented, listing, statement
 from pne_sym.backends.describe import FieldView, equation_titles, field_views
 from pne_sym.derivation import ParameterField
 from pne_sym.program.ir import Block
+from pne_sym.program.slices import symbols
 
 
 def _dimensions(shape: tuple[int, ...]) -> str:
@@ -70,7 +71,7 @@ class _Preparation:
         blocks = self.bundle.program.prepare
         totals = [str(target) for block in blocks for target, _ in block.sums]
         lines += [f"real {c_name(n)} = 0;" for n in totals]
-        shared = set().union(*(symbols_of(b) for b in blocks)) if blocks else set()
+        shared = set().union(*(symbols(b) for b in blocks)) if blocks else set()
         lines += self._parameters(shared, None)
         for block in blocks:
             lines += self._legs(block) if block.leg_type else self._once(block)
@@ -84,7 +85,7 @@ class _Preparation:
 
     def _legs(self, block: Block) -> list[str]:
         leg = block.leg_type
-        inner = self._parameters(symbols_of(block), leg)
+        inner = self._parameters(symbols(block), leg)
         inner += statements(block.assignments, self.titles, self.printer)
         for store in block.stores:
             inner.append(f"model->{c_name(store.array)}[leg] = {self.printer.text(store.value)};")

@@ -8,9 +8,6 @@ several states.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from math import prod
-
-import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_text import (
@@ -26,7 +23,8 @@ from pne_sym.backends.c_text import (
 )
 from pne_sym.backends.describe import equation_titles
 from pne_sym.backends.scalar import wrap
-from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput, Store
+from pne_sym.program.ir import Assignment, Block, Check, Function, LegInput
+from pne_sym.program.slices import columns, flat_places, is_full, slices, symbols
 
 _SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
 _TROUBLES = ("unreachable", "singular")
@@ -52,25 +50,6 @@ def statements(
     return lines
 
 
-def symbols_of(block: Block | None) -> set[str]:
-    """Names that a block reads or makes."""
-    if block is None:
-        return set()
-    expressions = [a.expr for a in block.assignments]
-    expressions += [sp.sympify(s.value) for s in block.stores]
-    expressions += [sp.sympify(v) for _, v in block.sums]
-    expressions += [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
-    return {symbol.name for e in expressions for symbol in e.free_symbols}
-
-
-def flat_places(store: Store, columns: int, legs: int) -> tuple[int, ...]:
-    """Flat index of a stored entry, for every leg."""
-    row, column = store.row, 0 if store.column is None else store.column
-    rows = row if isinstance(row, tuple) else (row,) * legs
-    across = column if isinstance(column, tuple) else (column,) * legs
-    return tuple(r * columns + c for r, c in zip(rows, across, strict=True))
-
-
 class Parts:
     """The parts of one function, as routines."""
 
@@ -80,17 +59,14 @@ class Parts:
         self.name = function.name
         self.printer = CPrinter()
         self.titles = equation_titles(bundle.derivation)
-        blocks = function.blocks
-        first = next((k for k, b in enumerate(blocks) if b.leg_type), len(blocks))
-        self.first = next(iter(blocks[:first]), None)
-        self.legs = [b for b in blocks if b.leg_type]
-        self.last = next((b for b in blocks[first:] if not b.leg_type), None)
-        made = [str(a.target) for a in function.unpack]
-        made += [str(a.target) for a in (self.first.assignments if self.first else ())]
-        later = set().union(*(symbols_of(b) for b in (*self.legs, self.last)))
-        self.passed = [n for n in dict.fromkeys(made) if n in later]
-        self.sums = [str(t) for b in self.legs for t, _ in b.sums]
-        self.made = {*made, *self.sums, *(str(a.target) for b in blocks for a in b.assignments)}
+        self.slices = slices(function)
+        self.first, self.legs, self.last = (
+            self.slices.before,
+            self.slices.legs,
+            self.slices.after,
+        )
+        self.passed, self.sums = self.slices.passed, self.slices.sums
+        self.made = self.slices.made
 
     def passed_fields(self) -> list[str]:
         """Names of what the later parts need."""
@@ -98,24 +74,17 @@ class Parts:
 
     def columns(self, array: str) -> int:
         """Length of a row of an output array."""
-        shape = self.bundle.program.shapes[array]
-        return shape[1] if len(shape) == 2 else 1
+        return columns(self.bundle.program.shapes[array])
 
     def is_full(self, array: str) -> bool:
         """Whether every entry of an array is stored."""
-        stored: set[int] = set()
-        for block in self.f.blocks:
-            legs = self.bundle.leg_counts.get(block.leg_type, 1)
-            for store in (s for s in block.stores if s.array == array):
-                stored |= set(flat_places(store, self.columns(array), legs))
-        return len(stored) == prod(self.bundle.program.shapes[array])
+        return is_full(self.f, array, self.bundle.program.shapes[array], self.bundle.leg_counts)
 
     # ---- before and after the legs ---------------------------------------------------------
 
     def before(self) -> Routine:
         """Names the inputs, computes what the legs share."""
-        reads = {s.name for a in self.f.unpack for s in a.expr.free_symbols}
-        reads |= symbols_of(self.first)
+        reads = self.slices.reads_before
         lines = []
         for vector in self.f.inputs:
             size = self.bundle.coordinates.sizes[_SIZES[vector]]
@@ -138,7 +107,7 @@ class Parts:
     def after(self) -> Routine:
         """Computes what needs the sums over the legs."""
         assert self.last is not None
-        reads = symbols_of(self.last)
+        reads = symbols(self.last)
         lines = self._passed(reads, "k")
         lines += [
             f"const real {c_name(n)} = s->sum[{at}][k];"
@@ -185,7 +154,7 @@ class Parts:
 
     def over(self, block: Block) -> Routine:
         """Computes one leg, for the legs of one state or for several states."""
-        leg, reads = block.leg_type, symbols_of(block)
+        leg, reads = block.leg_type, symbols(block)
         tables: list[str] = []
         lines = self._passed(reads, "j")
         lines += self._prepared(self.f.shared, reads)

@@ -12,10 +12,11 @@ from pne_sym.backends.describe import (
     describe,
     field_views,
 )
-from pne_sym.backends.numpy_parts import Parts, block_symbols
+from pne_sym.backends.numpy_parts import Parts
 from pne_sym.backends.numpy_text import PythonText
 from pne_sym.backends.templating import render
 from pne_sym.derivation import LegTypeInfo
+from pne_sym.program.slices import symbols
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ def _prepare(bundle: Bundle, text: PythonText) -> str:
 def _parameters_read(bundle: Bundle) -> list[str]:
     """Names for the entries of parameters and the signs of branches that are used."""
     table = bundle.derivation.parameters
-    used = {s.name for block in bundle.program.prepare for s in block_symbols(block)}
+    used = set[str]().union(*map(symbols, bundle.program.prepare))
     entries = [
         f"{name} = p.{field.name}"
         + _subscript(field.shape, index, per_leg=field.leg_type is not None)

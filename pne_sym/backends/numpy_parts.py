@@ -3,26 +3,17 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from typing import Any
-
-import sympy as sp
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.numpy_text import WIDTH, PythonText
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.count import count_function
-from pne_sym.program.ir import Assignment, Block, Function, Store
+from pne_sym.program.ir import Block, Function, Store
+from pne_sym.program.slices import columns, flat_places, slices
 
 PLAN_NAMES = {"legs": "LEGS_FORCE"}
-
-
-def block_symbols(block: Block) -> set[Any]:
-    """Symbols that a block reads or computes with."""
-    expressions = [a.expr for a in block.assignments]
-    expressions += [sp.sympify(s.value) for s in block.stores]
-    expressions += [sp.sympify(v) for _, v in block.sums]
-    expressions += [e for c in block.checks for e in (c.value, c.scale)]
-    return {symbol for e in expressions for symbol in e.free_symbols}
 
 
 class Parts:
@@ -31,18 +22,7 @@ class Parts:
     def __init__(self, text: PythonText, bundle: Bundle, function: Function) -> None:
         self.w, self.bundle = text, bundle
         self.f = function
-        blocks = function.blocks
-        self.before = next((b for b in blocks if not b.leg_type and not _is_total(b, blocks)), None)
-        self.legs = [b for b in blocks if b.leg_type]
-        self.total = next((b for b in blocks if not b.leg_type and b is not self.before), None)
-        made = [str(a.target) for a in function.unpack]
-        made += [str(a.target) for a in (self.before.assignments if self.before else ())]
-        later = {
-            s.name
-            for b in [*self.legs, *([self.total] if self.total else [])]
-            for s in block_symbols(b)
-        }
-        self.passed = [n for n in dict.fromkeys(made) if n in later]
+        self.slices = slices(function)
 
     def text(self) -> str:
         """All parts as functions, headed by the operation counts."""
@@ -52,9 +32,9 @@ class Parts:
             f"{counts.sqrt} sqrt, {counts.trig} trig"
         )
         parts = [comment + "\n" + self._before(name)]
-        parts += [self._leg(name, block) for block in self.legs]
-        if self.total:
-            parts.append(self._after(name))
+        parts += [self._leg(name, block) for block in self.slices.legs]
+        if self.slices.after:
+            parts.append(self._after(name, self.slices.after))
         return "\n\n\n".join(parts)
 
     def _header(self, lines: list[str], names: list[str]) -> list[str]:
@@ -66,19 +46,22 @@ class Parts:
         return f"def {signature}:\n" + textwrap.indent("\n".join(math + body), "    ")
 
     def _before(self, name: str) -> str:
+        part = self.slices.before
         inputs = {v: self._entries(v) for v in self.f.inputs}
-        body = self.w.names(self._shared(self.before, self.f.unpack), "c")
+        body = self.w.names(self.slices.shared(part), "c")
         for vector, size in inputs.items():
             for k in size:
                 body.append(f"{vector}_{k} = {vector}[{k}]")
         body += self.w.statements(self.f.unpack)
         checks = list(self.f.unpack_checks)
-        if self.before:
-            body += self.w.statements(self.before.assignments)
-            checks += self.before.checks
-        stores = self._store_values(self.before)
+        if part:
+            body += self.w.statements(part.assignments)
+            checks += part.checks
+        stores = self._store_values(part)
         body.append(f"ok = {self._input_checks(checks)}")
-        body += self.w.returns(["ok", f"({self._tuple(self.passed)})", f"({self._tuple(stores)})"])
+        body += self.w.returns(
+            ["ok", f"({self._tuple(self.slices.passed)})", f"({self._tuple(stores)})"]
+        )
         return self._define(
             f"_{name}_before(c, {', '.join(self.f.inputs)}, f)"
             if self.f.inputs
@@ -94,17 +77,10 @@ class Parts:
         return " & ".join(parts) or "True"
 
     def _entries(self, vector: str) -> list[int]:
-        used = {s.name for a in self.f.unpack for s in a.expr.free_symbols}
         sizes = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
-        count = self.bundle.coordinates.sizes[sizes[vector]]
-        return [k for k in range(count) if f"{vector}_{k}" in used]
+        return self.slices.entries(vector, self.bundle.coordinates.sizes[sizes[vector]])
 
-    def _shared(self, block: Block | None, unpack: tuple[Assignment, ...] = ()) -> list[str]:
-        used = {s.name for s in block_symbols(block)} if block else set()
-        used |= {s.name for a in unpack for s in a.expr.free_symbols}
-        return [n for n in self.f.shared if n in used]
-
-    def _tuple(self, values: list[str]) -> str:
+    def _tuple(self, values: Sequence[str]) -> str:
         return ", ".join(values) + ("," if values else "")
 
     def _store_values(self, block: Block | None) -> list[str]:
@@ -114,12 +90,11 @@ class Parts:
 
     def _leg(self, name: str, block: Block) -> str:
         leg = block.leg_type
-        used = {s.name for s in block_symbols(block)}
         inputs = [i.symbol.name for i in self.f.leg_inputs.get(leg, ())]
-        body = self.w.names([n for n in self.f.shared if n in used], "c")
+        body = self.w.names(self.slices.shared(block), "c")
         body += self.w.names(list(self.f.per_leg.get(leg, ())), "k")
         body += self.w.names(inputs, "x")
-        body += self.w.names([n for n in self.passed if n in used], "s")
+        body += self.w.names(self.slices.passed_to(block), "s")
         body += self.w.statements(block.assignments)
         body.append(f"ok = {self.w.checks(block.checks)}")
         sums = [self.w.of(value) for _, value in block.sums]
@@ -128,16 +103,13 @@ class Parts:
         )
         return self._define(f"_{name}_{leg}(c, k, x, s, f)", body)
 
-    def _after(self, name: str) -> str:
-        assert self.total is not None
-        used = {s.name for s in block_symbols(self.total)}
-        sums = [str(t) for b in self.legs for t, _ in b.sums]
-        body = self.w.names(self._shared(self.total), "c")
-        body += self.w.names([n for n in self.passed if n in used], "s")
-        body += self.w.names(sums, "t")
-        body += self.w.statements(self.total.assignments)
-        body.append(f"ok = {self.w.checks(self.total.checks)}")
-        body += self.w.returns(["ok", f"({self._tuple(self._store_values(self.total))})"])
+    def _after(self, name: str, block: Block) -> str:
+        body = self.w.names(self.slices.shared(block), "c")
+        body += self.w.names(self.slices.passed_to(block), "s")
+        body += self.w.names(list(self.slices.sums), "t")
+        body += self.w.statements(block.assignments)
+        body.append(f"ok = {self.w.checks(block.checks)}")
+        body += self.w.returns(["ok", f"({self._tuple(self._store_values(block))})"])
         return self._define(f"_{name}_after(c, s, t, f)", body)
 
     # ---- plan ------------------------------------------------------------------------------
@@ -149,23 +121,24 @@ class Parts:
         lines.append(f"    inputs={self.f.inputs!r},")
         arrays = tuple((a, shapes[a]) for a in self.f.arrays)
         lines += wrap(f"    arrays={arrays!r},", WIDTH, "        ")
-        before = self._shared(self.before, self.f.unpack)
+        parts = self.slices
         lines += self._listing(
-            "    before", f"_{name}_before", before, self._targets(self.before, shapes)
+            "    before",
+            f"_{name}_before",
+            parts.shared(parts.before),
+            self._targets(parts.before, shapes),
         )
         lines.append("    legs=(")
-        for block in self.legs:
+        for block in parts.legs:
             lines += self._leg_plan(name, block, shapes)
         lines.append("    ),")
-        if self.total:
-            used = {s.name for s in block_symbols(self.total)}
-            passed = [k for k, n in enumerate(self.passed) if n in used]
+        if parts.after:
             lines += self._listing(
                 "    after",
                 f"_{name}_after",
-                self._shared(self.total),
-                self._targets(self.total, shapes),
-                passed,
+                parts.shared(parts.after),
+                self._targets(parts.after, shapes),
+                [parts.passed.index(n) for n in parts.passed_to(parts.after)],
             )
         lines.append(")")
         return "\n".join(lines)
@@ -204,21 +177,17 @@ class Parts:
         return [f"({self.f.arrays.index(s.array)}, {self._flat(s, shapes)})" for s in block.stores]
 
     def _flat(self, store: Store, shapes: dict[str, tuple[int, ...]]) -> str:
-        width = shapes[store.array][1] if len(shapes[store.array]) == 2 else 1
-        rows, columns = store.row, store.column if store.column is not None else 0
-        if isinstance(rows, tuple) or isinstance(columns, tuple):
-            count = len(rows) if isinstance(rows, tuple) else len(columns)  # type: ignore[arg-type]
-            r = rows if isinstance(rows, tuple) else (rows,) * count
-            c = columns if isinstance(columns, tuple) else (columns,) * count
-            return repr(tuple(i * width + j for i, j in zip(r, c, strict=True)))
-        return repr(rows * width + columns)
+        tables = [i for i in (store.row, store.column) if isinstance(i, tuple)]
+        width = columns(shapes[store.array])
+        places = flat_places(store, width, len(tables[0]) if tables else 1)
+        return repr(places if tables else places[0])
 
     def _leg_plan(self, name: str, block: Block, shapes: dict[str, tuple[int, ...]]) -> list[str]:
         leg = block.leg_type
-        used = {s.name for s in block_symbols(block)}
-        passed = [k for k, n in enumerate(self.passed) if n in used]
+        parts = self.slices
+        passed = [parts.passed.index(n) for n in parts.passed_to(block)]
         inputs = tuple((i.vector, i.indices) for i in self.f.leg_inputs.get(leg, ()))
-        shared = [n for n in self.f.shared if n in used]
+        shared = parts.shared(block)
         inner = "            "
         lines = ["        _LegPart(", f"{inner}_{name}_{leg},", f'{inner}"{leg}",']
         lines += wrap(f"{inner}{tuple(shared)!r},", WIDTH, inner)
@@ -231,9 +200,3 @@ class Parts:
             lines += wrap(f"{inner}    {target},", WIDTH, f"{inner}    ")
         lines += [f"{inner}),", "        ),"]
         return lines
-
-
-def _is_total(block: Block, blocks: tuple[Block, ...]) -> bool:
-    """Whether a block without legs stands after a leg loop."""
-    place = blocks.index(block)
-    return any(b.leg_type for b in blocks[:place])

@@ -1,0 +1,123 @@
+"""What a function does before, over and after the legs, and what passes between these parts.
+
+Everything here follows from the function; back ends ask for it instead of reading their own text.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+
+import sympy as sp
+
+from pne_sym.program.ir import Assignment, Block, Function, Store
+
+
+@dataclass(frozen=True)
+class Slices:
+    """The parts of a function.
+
+    Attributes:
+        function: the function.
+        before: what precedes the legs, or None.
+        legs: a block per leg type, in order.
+        after: what needs the sums over the legs, or None.
+        passed: names made before the legs that later parts read, in order.
+        sums: names of the sums over the legs, in order.
+    """
+
+    function: Function
+    before: Block | None
+    legs: tuple[Block, ...]
+    after: Block | None
+    passed: tuple[str, ...]
+    sums: tuple[str, ...]
+
+    @property
+    def made(self) -> set[str]:
+        """Names that the function gives values itself."""
+        blocks = self.function.blocks
+        own = {str(a.target) for block in blocks for a in block.assignments}
+        return own | {str(a.target) for a in self.function.unpack} | set(self.sums)
+
+    @property
+    def reads_before(self) -> set[str]:
+        """Names that are read where the inputs are named, and before the legs."""
+        return symbols(self.before) | read_by(self.function.unpack)
+
+    def entries(self, vector: str, size: int) -> list[int]:
+        """Entries of an input vector that are read."""
+        read = read_by(self.function.unpack)
+        return [k for k in range(size) if f"{vector}_{k}" in read]
+
+    def shared(self, block: Block | None) -> list[str]:
+        """Prepared values, not per leg, that a part reads."""
+        read = self.reads_before if block is self.before else symbols(block)
+        return [name for name in self.function.shared if name in read]
+
+    def passed_to(self, block: Block | None) -> list[str]:
+        """Names of `passed` that a part reads."""
+        read = symbols(block)
+        return [name for name in self.passed if name in read]
+
+
+def slices(function: Function) -> Slices:
+    """A function in its parts."""
+    blocks = function.blocks
+    first = next((k for k, b in enumerate(blocks) if b.leg_type), len(blocks))
+    before = next(iter(blocks[:first]), None)
+    legs = tuple(b for b in blocks if b.leg_type)
+    after = next((b for b in blocks[first:] if not b.leg_type), None)
+    made = [str(a.target) for a in (*function.unpack, *(before.assignments if before else ()))]
+    later = set[str]().union(*(symbols(b) for b in (*legs, after)))
+    return Slices(
+        function,
+        before,
+        legs,
+        after,
+        tuple(n for n in dict.fromkeys(made) if n in later),
+        tuple(str(t) for b in legs for t, _ in b.sums),
+    )
+
+
+def read_by(assignments: tuple[Assignment, ...]) -> set[str]:
+    """Names on the right-hand sides of assignments."""
+    return {s.name for a in assignments for s in a.expr.free_symbols}
+
+
+def symbols(block: Block | None) -> set[str]:
+    """Names that a block reads, those that it makes for itself included."""
+    if block is None:
+        return set()
+    expressions = [a.expr for a in block.assignments]
+    expressions += [sp.sympify(s.value) for s in block.stores]
+    expressions += [sp.sympify(v) for _, v in block.sums]
+    expressions += [sp.sympify(e) for c in block.checks for e in (c.value, c.scale)]
+    return {symbol.name for e in expressions for symbol in e.free_symbols}
+
+
+def columns(shape: tuple[int, ...]) -> int:
+    """Length of a row of an array."""
+    return shape[1] if len(shape) == 2 else 1
+
+
+def flat_places(store: Store, width: int, legs: int = 1) -> tuple[int, ...]:
+    """Flat index of a stored entry for every leg; `width` is the length of the array's rows."""
+    row, column = store.row, 0 if store.column is None else store.column
+    rows = row if isinstance(row, tuple) else (row,) * legs
+    across = column if isinstance(column, tuple) else (column,) * legs
+    return tuple(r * width + c for r, c in zip(rows, across, strict=True))
+
+
+def is_full(
+    function: Function, array: str, shape: tuple[int, ...], legs: Mapping[str, int]
+) -> bool:
+    """Whether every entry of an output array is stored (what is not is zero)."""
+    stored: set[int] = set()
+    for block in function.blocks:
+        for store in block.stores:
+            if store.array == array:
+                places = flat_places(store, columns(shape), legs.get(block.leg_type, 1))
+                stored |= set(places)
+    return len(stored) == prod(shape)
