@@ -5,9 +5,9 @@ what [H Hk]^T takes to zero are the motions with all actuated joints at rest.  S
 [H Hk] is NV less the number of these; rows are independent where no motion that leaves all other
 coordinates at rest is among them.  Nothing of this needs the equations of motion.
 
-A rank is generic if it is the largest: it is taken over home, poses around it, and other geometries
-of the same structure.  A geometry that the loops do not allow (a wrist whose axes do not meet)
-is none of the structure's: it has more constraints, and is left out.
+A rank is generic if it is the largest: it is taken over home, poses around it, and other lengths,
+points and frames.  A geometry that the loops do not allow (a wrist whose axes do not meet) has more
+constraints, or does not close, and is left out.
 """
 
 from __future__ import annotations
@@ -20,7 +20,6 @@ import numpy.typing as npt
 
 from pne_sym.derivation import Actuation
 from pne_sym.mechanics.mobility import DEPENDENT, closure_at_home, mobility, null_space
-from pne_sym.mechanics.structure import is_coordinate, is_related
 from pne_sym.model.closure import TWIST, displaced, leg_gap, pose_at, turned, unreachable
 from pne_sym.model.loops import COORDINATES, Loops, all_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Matrix3, Space, Vector3
@@ -191,34 +190,36 @@ def _elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
 def _changed(
     m: Manipulator, rng: np.random.Generator, *, points: bool, frames: bool
 ) -> Manipulator:
-    """Another geometry of the same structure: lengths; points of the legs; directions too."""
+    """Another geometry: of lengths; of the legs' points; of their base frames.
+
+    Directions within a leg stay.  An offset along the axis of a joint, by which a leg can spin
+    idly, is a matter of design, whether or not the axes of a frame are drawn along it.
+    """
     size, planar = _size(m), m.space in (Space.PLANAR, Space.POINT)
 
     def moved(point: Vector3) -> Vector3:
         shift = _CHANGE * size * rng.uniform(-1.0, 1.0, 3) * (1.0, 1.0, 0.0 if planar else 1.0)
         return _vector(np.array(point) + shift)
 
-    def scaled(vector: Vector3) -> Vector3:
-        return _vector(np.array(vector) * (1.0 + _CHANGE * rng.uniform(-1.0, 1.0, 3)))
+    def factor() -> float:
+        return 1.0 + _CHANGE * float(rng.uniform(-1.0, 1.0))
 
-    def joint(old: Joint, leg: Leg) -> Joint:
-        pitch = old.pitch * (1.0 + _CHANGE * float(rng.uniform(-1.0, 1.0)))
-        axis = old.axis
-        if frames and not is_coordinate(axis) and not is_related(old, leg):
-            axis = _vector(_turn(rng, planar=planar) @ np.array(axis))
-        return replace(old, offset=scaled(old.offset), pitch=pitch, axis=axis)
+    def scaled(vector: Vector3) -> Vector3:
+        return _vector(np.array(vector) * factor())
+
+    def joint(old: Joint) -> Joint:
+        return replace(old, offset=scaled(old.offset), pitch=old.pitch * factor())
 
     def changed(leg: Leg) -> Leg:
-        frame = np.array(leg.base_frame)
-        end = replace(leg.platform_joint, offset=scaled(leg.platform_joint.offset))
-        still = m.space is Space.POINT or not points
+        frame, end = np.array(leg.base_frame), leg.platform_joint
+        seated = m.space is Space.POINT or not points
         return replace(
             leg,
-            joints=tuple(joint(each, leg) for each in leg.joints),
+            joints=tuple(joint(each) for each in leg.joints),
             base_point=moved(leg.base_point) if points else leg.base_point,
             base_frame=_matrix(_turn(rng, planar=planar) @ frame) if frames else leg.base_frame,
-            platform_joint=end,
-            platform_point=leg.platform_point if still else moved(leg.platform_point),
+            platform_joint=replace(end, offset=scaled(end.offset)),
+            platform_point=leg.platform_point if seated else moved(leg.platform_point),
         )
 
     return replace(m, legs=tuple(changed(leg) for leg in m.legs))

@@ -105,12 +105,6 @@ def _axis_key(axis: Vector3 | None) -> object:
     return tuple(int(a) for a in axis) if is_coordinate(axis) else "general"
 
 
-def is_related(joint: Joint, leg: Leg) -> bool:
-    """Whether an axis is parallel or perpendicular to that of another joint of the leg."""
-    others = np.array([other.axis for other in leg.joints if other is not joint]).reshape(-1, 3)
-    return bool(_near_integer(others @ np.array(joint.axis)).any())
-
-
 def _near_integer(values: Array) -> NDArray[np.bool_]:
     return np.asarray(np.abs(values - np.rint(values)) < TOLERANCE, dtype=np.bool_)
 
