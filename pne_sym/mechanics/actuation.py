@@ -16,15 +16,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-import numpy.typing as npt
 
 from pne_sym.derivation import Actuation
 from pne_sym.mechanics.mobility import DEPENDENT, closure_at_home, mobility, null_space
-from pne_sym.model.closure import TWIST, displaced, leg_gap, pose_at, turned, unreachable
-from pne_sym.model.loops import COORDINATES, Loops, all_closed
+from pne_sym.model.closure import leg_gap, unreachable
+from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
+from pne_sym.model.loops import Loops, all_closed
 from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Matrix3, Space, Vector3
-
-Array = npt.NDArray[np.float64]
 
 _POSES = 2
 """Poses beside home, and with each other geometry."""
@@ -59,7 +57,7 @@ def actuation(manipulator: Manipulator) -> Actuation:
     >>> found.rank, found.passive, found.is_coupled
     (6, (6, 7, 8, 9, 10, 11), False)
     """
-    twist = len(TWIST[manipulator.space])
+    twist = len(TASK_SPACES[manipulator.space].components)
     extra = [joint for leg in manipulator.legs for joint in leg.joints if joint.extra]
     passive = tuple(k for k, joint in enumerate(extra, twist) if not joint.actuated)
     size, seen = twist + len(extra), list[_Ranks]()
@@ -82,7 +80,7 @@ def _ranks(m: Manipulator, size: int) -> _Ranks:
     joints = [joint for leg in m.legs for joint in leg.joints]
     actuated = np.array([joint.actuated for joint in joints], dtype=bool)
     passive = np.array([joint.extra and not joint.actuated for joint in joints], dtype=bool)
-    motions, twist = null_space(closure_at_home(m)), len(TWIST[m.space])
+    motions, twist = null_space(closure_at_home(m)), len(TASK_SPACES[m.space].components)
     platform, rates = motions[:twist], motions[twist:]
     freedoms, held = motions.shape[1], _rank(rates[actuated])
     return _Ranks(
@@ -101,7 +99,7 @@ def _force_rank(m: Manipulator) -> int:
     of choice: any left inverse of the leg's Jacobian will do, so one is drawn.
     """
     loops, rng = Loops(m.space, m.legs, m.fixed_centre), np.random.default_rng(0)
-    pose, twist = pose_at(m.space, m.home.X, m.fixed_centre), TWIST[m.space]
+    pose, twist = pose_at(m.space, m.home.X, m.fixed_centre), TASK_SPACES[m.space].components
     q, extras = np.array(m.home.q), np.cumsum([0, *loops.extra])
     columns = []
     for leg, s in zip(m.legs, loops.slices(), strict=True):
@@ -161,25 +159,25 @@ def _size(m: Manipulator) -> float:
 
 def _closed(m: Manipulator, X: Array, q: Array) -> Manipulator | None:
     """The manipulator with its home at the closure next to these coordinates; None if none."""
-    loops, size = Loops(m.space, m.legs, m.fixed_centre), len(COORDINATES[m.space])
+    loops = Loops(m.space, m.legs, m.fixed_centre)
     X, q = all_closed(loops, X, q)
     if not max(loops.gaps(X, q)) < _GAP * max(1.0, _size(m)):
         return None
-    X = np.concatenate([X[:size], q[loops.extra]])
+    X = np.concatenate([X[: loops.size], q[loops.extra]])
     return replace(m, home=Home(tuple(X.tolist()), tuple(q.tolist())))
 
 
 def _elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
     """The same mechanism moved a random way along its freedoms."""
-    motions, twist = null_space(closure_at_home(m)), len(TWIST[m.space])
+    motions, twist = null_space(closure_at_home(m)), len(TASK_SPACES[m.space].components)
     step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])
-    joints = [joint for leg in m.legs for joint in leg.joints]
-    shifts = [k < 3 for k in TWIST[m.space]] + [joint.kind.value == "P" for joint in joints]
+    loops, space = Loops(m.space, m.legs, m.fixed_centre), TASK_SPACES[m.space]
+    shifts = [k < 3 for k in space.components] + [not joint.turns for joint in loops.joints]
     sizes = np.where(shifts, _SHIFT * _size(m), _TURN)
     step /= float(np.max(np.abs(step) / sizes))
     X, q = np.array(m.home.X), np.array(m.home.q)
     for _ in range(_ATTEMPTS):
-        pose = displaced(m.space, X[: len(COORDINATES[m.space])], step[:twist])
+        pose = displaced(m.space, X[: loops.size], step[:twist])
         found = _closed(m, pose, q + step[twist:])
         if found is not None:
             return found
@@ -195,7 +193,7 @@ def _changed(
     Directions within a leg stay.  An offset along the axis of a joint, by which a leg can spin
     idly, is a matter of design, whether or not the axes of a frame are drawn along it.
     """
-    size, planar = _size(m), m.space in (Space.PLANAR, Space.POINT)
+    size, planar = _size(m), TASK_SPACES[m.space].planar
 
     def moved(point: Vector3) -> Vector3:
         shift = _CHANGE * size * rng.uniform(-1.0, 1.0, 3) * (1.0, 1.0, 0.0 if planar else 1.0)
@@ -227,7 +225,7 @@ def _changed(
 
 def _turn(rng: np.random.Generator, *, planar: bool) -> Array:
     axis = np.array([0.0, 0.0, 1.0]) if planar else rng.normal(size=3)
-    return turned(_vector(axis / np.linalg.norm(axis)), _CHANGE * float(rng.uniform(-1.0, 1.0)))
+    return rotation_about(axis / np.linalg.norm(axis), _CHANGE * float(rng.uniform(-1.0, 1.0)))
 
 
 def _vector(values: Array) -> Vector3:

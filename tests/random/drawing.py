@@ -521,7 +521,7 @@ class _Drawing:
 def driven_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator | None:
     """The mechanism with other drives: in any joints, in any number; None if all are singular."""
     for _ in range(30):
-        chance = float(rng.choice([0.3, 0.5, 0.8]))
+        chance = float(rng.choice([0.3, 0.5, 0.7, 0.9]))
         marks = [
             [bool(rng.random() < (0.15 if joint.extra else chance)) for joint in leg.joints]
             for leg in drawn.legs
