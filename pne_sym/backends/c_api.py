@@ -123,7 +123,7 @@ def _solved(d: Described) -> list[Api]:
             f"{forces} for the acceleration A, by Eq. 3{least}.",
             (X, V, A, wrench),
             (v["tau"], *multipliers),
-            lanes=not d.is_redundant,
+            lanes=d.is_underdriven or not d.by_least_norm,
         ),
         Api(
             "forward_dynamics",
@@ -144,8 +144,8 @@ def _solved(d: Described) -> list[Api]:
                 found[0].outputs,
             ),
         )
-    if n["NU"] > len(d.driven_rows):
-        columns = n["NU"] - len(d.driven_rows)
+    if n["NU"] > d.actuation.force_rank:
+        columns = n["NU"] - d.actuation.force_rank
         found.append(
             Api(
                 "null_space",
@@ -157,6 +157,26 @@ def _solved(d: Described) -> list[Api]:
     return found
 
 
+def _completion(d: Described) -> str:
+    """What `complete_acceleration` does."""
+    if d.is_underdriven and d.actuation.passive:
+        return "SINGULAR: with fewer actuators than freedoms no accelerations will do."
+    if not d.actuation.passive:
+        return "A: there are no passive extra coordinates, whose accelerations would follow."
+    if not d.completes:
+        return "A: passive extra coordinates are held too, whatever their accelerations."
+    if not d.resolves:
+        return (
+            "A with the entries of passive extra coordinates taken from their own rows, on which "
+            "nothing else acts."
+        )
+    least = ", by the least change in the metric of M" if d.completes_freely else ""
+    return (
+        "A with other entries of passive extra coordinates, so that M A + Z - wrench is in the "
+        f"range of {'[H Hk]' if d.is_constrained else 'H'}{least}."
+    )
+
+
 def _derived(d: Described) -> list[Api]:
     """What is made of other functions."""
     wide = 6 if d.coordinates.transmits_moments else 3
@@ -166,8 +186,8 @@ def _derived(d: Described) -> list[Api]:
     found = [
         Api(
             "complete_acceleration",
-            "A with the entries of undriven extra coordinates taken from their own rows.",
-            (X, V, A),
+            _completion(d),
+            (X, V, A, wrench),
             (Argument("completed", n["NV"], "NV"),),
         ),
         Api(

@@ -52,8 +52,9 @@ class CView:
         closure_functions: texts of the functions that these need.
         functions: texts of the other functions of the program.
         calls: calls of such functions in templates, by purpose.
-        driven: number of rows on which drives act.
-        free: number of equations for undriven extra coordinates.
+        driven: number of equations from which the forces are found.
+        completion: number of equations for the accelerations of passive extra coordinates.
+        gathers: whether rows on which nothing acts are found by rank.
         padded: sizes of linear systems, padded, by purpose.
         big: largest number of rows or columns of a least-squares problem.
         q0: where the quaternion begins in X.
@@ -78,7 +79,8 @@ class CView:
     functions: tuple[str, ...]
     calls: dict[str, str]
     driven: int
-    free: int
+    completion: int
+    gathers: bool
     padded: dict[str, int]
     big: int
     q0: int
@@ -109,7 +111,8 @@ class CBackend:
         closures = _closures(bundle, runs)
         api = [ApiWriter(bundle.name, a) for a in api_table(bundle, d)]
         driven = tuple(c.joints.index(a) for a in c.actuators)
-        free = len(d.free_rows) + (len(d.driven_rows) if d.is_coupled else 0)
+        passive, idle = len(d.actuation.passive), d.actuation.idle
+        completion = passive + (idle if d.completes_freely else 0)
         return CView(
             coordinates=_coordinate_lines(d),
             parameters=tuple(parameter_fields(bundle)),
@@ -127,17 +130,17 @@ class CBackend:
             closure_functions=tuple(t for n, t in functions.items() if _is_closure(n)),
             functions=tuple(t for n, t in functions.items() if not _is_closure(n)),
             calls=_calls(runs),
-            driven=len(d.driven_rows),
-            free=free,
+            driven=len(d.actuation.solved) - d.actuation.surplus,
+            completion=completion,
+            gathers=d.resolves or n["NU"] > d.actuation.force_rank != len(d.actuation.others),
             padded={
-                "drive": _padded(len(d.driven_rows)),
+                "drive": _padded(len(d.actuation.solved)),
                 "forward": _padded(n["NV"] + n["NC"]),
-                "free": _padded(free),
+                "completion": _padded(completion),
             },
             big=max(
                 n["NV"],
                 n["NU"] + n["NC"],
-                len(d.driven_rows),
                 *(max(x.rows, x.of.unknowns) for x in closures),
             ),
             q0=c.pose.index("qx") if c.has_quaternion else 0,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.derivation import Coordinates, Derivation, ParameterField
+from pne_sym.derivation import Actuation, Coordinates, Derivation, ParameterField
 from pne_sym.program.count import count_function
 
 
@@ -48,10 +48,6 @@ class Described:
         coordinates: names and order.
         pose_text, rate_text, tau_text, wrench_text: contents of X, V, tau, wrench.
         counts: (function, mul, add, div, sqrt, trig).
-        driven_rows: rows from which the drives are found: those of H or Hk that can be other
-            than zero, without free rows.
-        free_rows: rows of extra coordinates whose joints are not driven.
-        is_coupled: drives or constraints act on free rows too.
         has_rotation, has_quaternion, is_constrained, is_redundant, has_extras: features.
         legs: number of legs.
         is_numeric: some displacements are found by iteration; functions take q0.
@@ -67,9 +63,6 @@ class Described:
     tau_text: str
     wrench_text: str
     counts: tuple[tuple[str, int, int, int, int, int], ...]
-    driven_rows: tuple[int, ...]
-    free_rows: tuple[int, ...]
-    is_coupled: bool
     legs: int
 
     is_numeric: bool
@@ -90,14 +83,43 @@ class Described:
         return self.sizes["NC"] > 0
 
     @property
+    def actuation(self) -> Actuation:
+        """What actuators and constraints determine."""
+        return self.coordinates.actuation
+
+    @property
     def is_redundant(self) -> bool:
-        """Whether there are more drives than driven rows."""
-        return self.sizes["NU"] + self.sizes["NC"] > len(self.driven_rows)
+        """Whether the actuators can hold the mechanism in more than one way."""
+        found = self.sizes["NU"] + self.sizes["NC"] > self.actuation.rank
+        return found and not self.is_underdriven
 
     @property
     def is_underdriven(self) -> bool:
-        """Whether there are fewer drives than driven rows: no forces give any acceleration."""
-        return self.sizes["NU"] + self.sizes["NC"] < len(self.driven_rows)
+        """Whether rows beside those of passive extra coordinates cannot all be held.
+
+        Then no forces give any acceleration.
+        """
+        return not self.actuation.is_determined
+
+    @property
+    def by_least_norm(self) -> bool:
+        """Whether forces are found by least norm, not from as many equations as unknowns."""
+        return self.is_redundant or self.actuation.surplus > 0
+
+    @property
+    def completes(self) -> bool:
+        """Whether accelerations of passive extra coordinates follow from those of the others."""
+        return self.actuation.idle > 0 and not self.is_underdriven
+
+    @property
+    def completes_freely(self) -> bool:
+        """Whether they do so in more than one way."""
+        return self.completes and self.actuation.idle < len(self.actuation.passive)
+
+    @property
+    def resolves(self) -> bool:
+        """Whether combinations of rows on which nothing acts are found at run time."""
+        return self.completes and self.actuation.is_coupled
 
     @property
     def has_extras(self) -> bool:
@@ -118,8 +140,6 @@ def describe(bundle: Bundle) -> Described:
     c = bundle.coordinates
     extra = tuple(f"leg{i + 1}_joint{j + 1}" for i, j in c.extras)
     counts = []
-    filled = _filled_rows(bundle)
-    passive = [k for k, joint in enumerate(c.extras, len(c.rates)) if joint not in c.actuators]
     for function in bundle.program.functions.values():
         n = count_function(function, bundle.leg_counts)
         counts.append((function.name, n.mul, n.add, n.div, n.sqrt, n.trig))
@@ -134,24 +154,9 @@ def describe(bundle: Bundle) -> Described:
         ", ".join(f"leg {i + 1} joint {j + 1}" for i, j in c.actuators),
         ", ".join(c.wrench),
         tuple(counts),
-        tuple(k for k in filled if k not in passive),
-        tuple(passive),
-        any(k in filled for k in passive),
         len(bundle.manipulator.legs),
         not all(t.is_closed for t in bundle.derivation.leg_types),
     )
-
-
-def _filled_rows(bundle: Bundle) -> tuple[int, ...]:
-    """Rows of H or Hk in which something stands."""
-    rows = set()
-    for name in ("H", "Hk"):
-        if name not in bundle.program.functions:
-            continue
-        for block in bundle.program.functions[name].blocks:
-            for store in block.stores:
-                rows |= set(store.row) if isinstance(store.row, tuple) else {store.row}
-    return tuple(sorted(rows))
 
 
 def equation_titles(derivation: Derivation) -> dict[str, str]:

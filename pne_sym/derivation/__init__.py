@@ -1,5 +1,6 @@
 """A derivation as data: named equations, the laws behind them, the notation."""
 
+from pne_sym.derivation.actuation import Actuation
 from pne_sym.derivation.book import Book
 from pne_sym.derivation.equation import (
     PLATFORM,
@@ -23,6 +24,7 @@ from pne_sym.derivation.parameters import ParameterField, ParameterTable
 
 __all__ = [
     "PLATFORM",
+    "Actuation",
     "Book",
     "Chapter",
     "Condition",

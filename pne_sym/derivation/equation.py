@@ -14,6 +14,7 @@ from typing import Any
 
 import sympy as sp
 
+from pne_sym.derivation.actuation import Actuation
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector import (
     LegSum,
@@ -317,6 +318,7 @@ class Coordinates:
         constraint_units: unit of every entry of lambda, N or N m.
         turning: for every entry of q whether whole turns change nothing (not so for a screw).
         home: X and q at home.
+        actuation: what actuators and constraints determine, by generic rank.
         transmits_moments: some leg transmits a moment: leg reactions have six entries.
     """
 
@@ -332,6 +334,7 @@ class Coordinates:
     constraints: tuple[int, ...]
     turning: tuple[bool, ...]
     home: tuple[tuple[float, ...], tuple[float, ...]]
+    actuation: Actuation
     transmits_moments: bool = False
     constraint_units: tuple[str, ...] = ()
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output, Role
+from pne_sym.mechanics.actuation import actuation
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_at_home
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
@@ -79,6 +80,7 @@ def _coordinates(manipulator: Manipulator, space: TaskSpace, legs: list[Leg]) ->
         constraints=tuple(index for index, *_ in constraints),
         turning=tuple(joint.kind is JointKind.REVOLUTE for *_, joint in joints),
         home=(tuple(manipulator.home.X), tuple(manipulator.home.q)),
+        actuation=actuation(manipulator),
         transmits_moments=any(leg.motion.n for leg in legs),
         constraint_units=tuple(unit for *_, unit in constraints),
     )

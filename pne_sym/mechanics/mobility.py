@@ -177,6 +177,11 @@ def drive_quality(manipulator: Manipulator) -> float:
     return float(np.linalg.svd(rows, compute_uv=False)[-1])
 
 
+def closure_at_home(manipulator: Manipulator) -> Array:
+    """Conditions of all loops (rows) on the platform's twist, then the rates of all joints."""
+    return _closure(manipulator)[0]
+
+
 def null_space(matrix: Array) -> Array:
     """Orthonormal columns that a matrix maps to zero."""
     _, values, vt = np.linalg.svd(matrix)

@@ -135,7 +135,7 @@ def test_precisions(planar: Manipulator, library: CLibrary, tmp_path: Path) -> N
 def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Path) -> None:
     """Planar, 3 RRP with the last displacement a coordinate of its own, one or two drives a leg.
 
-    With two, the forces on the rows of these coordinates are open.
+    With two, the drives hold these coordinates too: every acceleration has forces.
     """
     drawn = models.drawn("planar_3rrp_extra")
     legs = tuple(
@@ -143,17 +143,17 @@ def test_drives_that_act_on_undriven_extra_coordinates(drives: int, tmp_path: Pa
         for leg in drawn.legs
     )
     manipulator = drawn if drives == 6 else replace(drawn, legs=legs)
-    d = describe(models.bundle(manipulator))
-    assert (d.is_coupled, d.free_rows, d.sizes["NU"]) == (True, (3, 4, 5), drives)
+    found = describe(models.bundle(manipulator)).actuation
+    assert (found.is_coupled, found.passive, found.rank) == (True, (3, 4, 5), drives)
     library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
     given, module = near_home(manipulator, STATES), models.module(manipulator)
     if drives == 6:
-        X, q0, V, A = (given[name] for name in ("X", "q0", "V", "A"))
-        (found,), status = library.batch("complete_acceleration", X, q0, V, A)
-        assert np.isnan(found).all()
-        assert (status == SINGULAR).all()
-        assert np.isnan(module.complete_acceleration(X, V, A, q0=q0)).all()
-        del library.api["complete_acceleration"]
+        X, q0, V, A, wrench = (given[name] for name in ("X", "q0", "V", "A", "wrench"))
+        (completed,), status = library.batch("complete_acceleration", X, q0, V, A, wrench)
+        assert (status == OK).all()
+        np.testing.assert_array_equal(completed, A)
+        found_A = module.complete_acceleration(X, V, A, wrench=wrench, q0=q0)
+        np.testing.assert_array_equal(found_A, A)
     assert assert_agree(library, module, given) >= 12
 
 

@@ -38,10 +38,8 @@ from tests.oracle.coordinates import (
     task_size,
     twist_basis,
 )
+from tests.oracle.forces import RANK_TOLERANCE, completion, forces
 from tests.oracle.jets import Array, Jet
-
-RANK_TOLERANCE = 1e-9
-"""Singular values below this fraction of the largest count as zero."""
 
 
 @dataclass(frozen=True)
@@ -86,9 +84,10 @@ class Result:
         qd: (nj,) joint rates.
         qdd: (nj,) joint accelerations at A.
         tau: (nu,) driving forces for A and the wrench; least norm where not unique.  Rows
-            of extra coordinates that are not driven take no part.
+            of extra coordinates that are not driven hold in least squares only.
         lam: (nc,) multipliers that go with tau.
         tau_residual: (nv,) what tau and lam leave of M A + Z - W; zero for a consistent A.
+        load: (nv,) the wrench as a generalised force.
         kinetic: J.
         potential: J, zero at the base origin.
         inertia_forces: (nv,) the sums P_k at A; equal to M A + Z for an admissible A.
@@ -107,6 +106,7 @@ class Result:
     tau: Array
     lam: Array
     tau_residual: Array
+    load: Array
     kinetic: float
     potential: float
     inertia_forces: Array
@@ -187,7 +187,8 @@ def project(
     load = np.zeros_like(V)
     if wrench is not None:
         load[: task_size(manipulator.space)] = wrench
-    tau, lam, residual = _drives(manipulator, H, Hk, moving.forces - load)
+    demand = moving.forces - load
+    tau, lam = forces(H, Hk, demand, passive_extra_rows(manipulator))
     bodies = [leg.bodies.by(leg.rates) for leg in legs]
     return Result(
         M=np.sum([inertia_matrix(group) for group in [*bodies, platform]], axis=0),
@@ -201,7 +202,8 @@ def project(
         qdd=moving.qdd,
         tau=tau,
         lam=lam,
-        tau_residual=residual,
+        tau_residual=demand - H @ tau - Hk @ lam,
+        load=load,
         kinetic=moving.kinetic,
         potential=moving.potential,
         inertia_forces=moving.forces,
@@ -235,38 +237,32 @@ def complete_acceleration(
     A: Array,
     wrench: Array | None = None,
 ) -> Array:
-    """Fill the entries of A that belong to extra coordinates without a drive.
+    """Change entries of A that belong to extra coordinates without a drive, so that forces exist.
 
-    They follow from their own rows of M A + Z = H tau + W with the rest of A as given.
-    Where H does not vanish in these rows, tau is the one that the other rows demand.
+    Where drives and constraints together have full rank, nothing changes.  Else M A + Z - W is
+    brought into their range, by the least change in the metric of M.
 
     Returns:
         (nv,) acceleration.
 
     Raises:
-        OracleError: the given accelerations and the drives do not determine them.
+        OracleError: no change of these entries does.
     """
     rows = passive_extra_rows(manipulator)
     if not rows:
         return A
-    state = project(manipulator, X, q, V)
-    load = np.zeros_like(state.Z)
-    if wrench is not None:
-        load[: task_size(manipulator.space)] = wrench
-    others = [row for row in range(A.size) if row not in rows]
-    drive = np.hstack([state.H, state.Hk])
-    gain = drive[rows] @ np.linalg.pinv(drive[others])
-    effective = state.M[rows] - gain @ state.M[others]
-    bias = state.Z[rows] - gain @ (state.Z - load)[others]
-    if np.linalg.cond(effective[:, rows]) > 1.0 / RANK_TOLERANCE or (
-        np.abs(effective[:, rows]).max()
-        < RANK_TOLERANCE * np.abs(state.M[np.ix_(rows, rows)]).max()
-    ):
-        raise OracleError("the drives leave the passive extra coordinates undetermined")
+    state = project(manipulator, X, q, V, A, wrench)
     result = np.array(A, dtype=float)
-    result[rows] = 0.0
-    result[rows] = -np.linalg.solve(effective[:, rows], effective @ result + bias)
+    K = np.hstack([state.H, state.Hk])
+    result[rows] += completion(state.M, state.M @ A + state.Z - state.load, K, rows)
     return result
+
+
+def accelerated(manipulator: Manipulator, result: Result, tau: Array) -> Array:
+    """A under driving forces and the state's wrench: from reduced equations, no multipliers."""
+    N, c = admissible(result)
+    force = N.T @ (result.H @ tau + result.load - result.Z - result.M @ c)
+    return np.asarray(c + N @ np.linalg.solve(N.T @ result.M @ N, force))
 
 
 def _leg_kinematics(manipulator: Manipulator, number: int, X: Array, q: Array) -> _LegKinematics:
@@ -395,21 +391,6 @@ def _joint_acceleration(
 
     acceleration[leg.free] -= np.linalg.pinv(leg.jacobian[:, leg.free]) @ second_derivative()
     return acceleration, second_derivative()
-
-
-def _drives(
-    manipulator: Manipulator, H: Array, Hk: Array, demand: Array
-) -> tuple[Array, Array, Array]:
-    """tau, lambda and the remainder of H tau + Hk lambda = demand; least norm of tau."""
-    passive = passive_extra_rows(manipulator)
-    rows = [row for row in range(demand.size) if row not in passive]
-    # Lambda costs nothing: tau is fixed by the directions that constraints leave free.
-    left, values, _ = np.linalg.svd(Hk[rows])
-    rank = int((values > RANK_TOLERANCE * values.max(initial=1e-300)).sum())
-    free = left[:, rank:]
-    tau = np.linalg.pinv(free.T @ H[rows], rcond=RANK_TOLERANCE) @ (free.T @ demand[rows])
-    lam = np.linalg.pinv(Hk[rows], rcond=RANK_TOLERANCE) @ (demand[rows] - H[rows] @ tau)
-    return tau, lam, demand - H @ tau - Hk @ lam
 
 
 def _leg_results(

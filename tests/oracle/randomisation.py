@@ -38,7 +38,7 @@ from tests.oracle.coordinates import (
     task_size,
 )
 from tests.oracle.jets import Array
-from tests.oracle.projection import Result, complete_acceleration, project
+from tests.oracle.projection import Result, accelerated, complete_acceleration, project
 
 _STRUCTURE_TOLERANCE = 1e-9
 _ATTEMPTS = 300
@@ -415,7 +415,12 @@ def _random_motion(
         V = V - np.linalg.pinv(Hk.T) @ (Hk.T @ V)
         bias = project(manipulator, X, q, V).constraint_bias
         A = A - np.linalg.pinv(Hk.T) @ (Hk.T @ A + bias)
-    return V, complete_acceleration(manipulator, X, q, V, A, wrench), wrench
+    try:
+        A = complete_acceleration(manipulator, X, q, V, A, wrench)
+    except OracleError:  # too few drives: not every acceleration has forces
+        moving = project(manipulator, X, q, V, A, wrench)
+        A = accelerated(manipulator, moving, rng.uniform(-20.0, 20.0, moving.H.shape[1]))
+    return V, A, wrench
 
 
 def _wrapped(manipulator: Manipulator, X: Array, q: Array) -> tuple[Array, Array]:

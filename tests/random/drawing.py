@@ -36,6 +36,7 @@ from tests.oracle.coordinates import (
     rotation_from_quaternion,
     task_size,
 )
+from tests.oracle.forces import RANK_TOLERANCE, are_held, rank
 from tests.oracle.jets import Array, constant
 from tests.oracle.projection import project
 from tests.oracle.randomisation import matrix3, random_inertia, vector3
@@ -119,13 +120,24 @@ class _LegPlan:
     at_origin: bool = False
 
 
-def draw(seed: int, *, light: bool = False) -> Manipulator:
+def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulator:
     """The mechanism of a seed.
 
     Args:
         seed: of the generator.
         light: few leg types and short chains only, for a quick run.
+        anywhere: whether every second mechanism, and nearly all with extra coordinates, have
+            drives anywhere, in any number; False: as many as freedoms, or one or two more or less.
     """
+    drawn = _drawn(seed, light=light)
+    # A generator of its own: geometries stay those of the seed.
+    rng = np.random.default_rng([seed, 1])
+    if not anywhere or rng.random() < (0.1 if extra_indices(drawn) else 0.5):
+        return drawn
+    return driven_anywhere(drawn, rng) or drawn
+
+
+def _drawn(seed: int, *, light: bool) -> Manipulator:
     rng = np.random.default_rng(seed)
     # Drawn once: spaces where fewer structures are regular are not to become rare.
     space = Space(rng.choice(list(_SPACES), p=list(_SPACES.values())))
@@ -504,6 +516,41 @@ class _Drawing:
             return False
         values = np.linalg.eigvalsh(state.M)
         return bool(values[0] > INERTIA_QUALITY * values[-1])
+
+
+def driven_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator | None:
+    """The mechanism with other drives: in any joints, in any number; None if all are singular."""
+    for _ in range(30):
+        chance = float(rng.choice([0.3, 0.5, 0.7, 0.9]))
+        marks = [
+            [bool(rng.random() < (0.15 if joint.extra else chance)) for joint in leg.joints]
+            for leg in drawn.legs
+        ]
+        if not any(map(any, marks)):
+            continue
+        made = _driven(drawn, marks)
+        if is_clear(made, np.array(made.home.X), np.array(made.home.q)):
+            return made
+    return None
+
+
+def is_clear(made: Manipulator, X: Array, q: Array) -> bool:
+    """Whether every rank on which forces and accelerations depend is beyond doubt."""
+    nv, passive = task_size(made.space) + len(extra_indices(made)), passive_extra_rows(made)
+    state = project(made, X, q, np.zeros(nv))
+    K = np.hstack([state.H, state.Hk])
+    others = [row for row in range(nv) if row not in passive]
+    systems = [K, K[others]]
+    if are_held(K, passive) and rank(K) < nv:
+        systems.append(np.hstack([state.M[:, passive] / np.abs(state.M).max(), K]))
+    values = np.linalg.eigvalsh(state.M)
+    return all(map(_has_clear_rank, systems)) and bool(values[0] > INERTIA_QUALITY * values[-1])
+
+
+def _has_clear_rank(matrix: Array) -> bool:
+    values = np.linalg.svd(matrix, compute_uv=False)
+    doubtful = (values > RANK_TOLERANCE * values[0]) & (values < DRIVE_QUALITY * values[0])
+    return not bool(doubtful.any())
 
 
 def _regular(matrix: Array) -> bool:

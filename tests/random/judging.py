@@ -10,7 +10,7 @@ from __future__ import annotations
 import tempfile
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -32,10 +32,12 @@ from tests.oracle.coordinates import (
     passive_extra_rows,
     platform_rotation,
 )
+from tests.oracle.forces import RANK_TOLERANCE, are_held
 from tests.oracle.jets import Array
-from tests.oracle.projection import RANK_TOLERANCE, Result, admissible, project
+from tests.oracle.projection import Result, accelerated, admissible, project
 from tests.oracle.projection import complete_acceleration as complete
 from tests.oracle.specs import State, random_state
+from tests.random.invariants import Invariants
 
 TOLERANCE = 1e-9
 """Largest error of a right answer; legs and drives of what is drawn are well conditioned."""
@@ -149,8 +151,7 @@ def _under_drives(manipulator: Manipulator, rng: np.random.Generator, state: Sta
 def _caused(manipulator: Manipulator, rng: np.random.Generator, state: State) -> Array:
     """The acceleration that random drives cause at a state."""
     moving = project(manipulator, *state)
-    tau = rng.uniform(-20.0, 20.0, moving.H.shape[1])
-    return _forward(manipulator, replace(moving, tau=tau), state)
+    return accelerated(manipulator, moving, rng.uniform(-20.0, 20.0, moving.H.shape[1]))
 
 
 def project_size(manipulator: Manipulator, X: Array) -> int:
@@ -192,17 +193,9 @@ class _Comparison:
         note("accelerations", m.joint_accelerations(s.X, s.V, s.A, **guess), ours.qdd)
         self._dynamics()
         self._drives()
+        Invariants(self.manipulator, m, s, self.rng, guess).check(self.verdict.note)
         kinetic, potential = m.energy(s.X, s.V, **guess)
         note("energy", np.array([kinetic, potential]), np.array([ours.kinetic, ours.potential]))
-        if passive_extra_rows(self.manipulator):
-            given = np.array(s.A)
-            given[passive_extra_rows(self.manipulator)] = 0.0
-            found = m.complete_acceleration(s.X, s.V, given, **guess)
-            if _open(ours, passive_extra_rows(self.manipulator)) and np.isnan(found).all():
-                expected = found = np.zeros(0)  # the drives' forces are open, and it says so
-            else:
-                expected = complete(self.manipulator, s.X, s.q, s.V, given)
-            note("completed A", found, expected)
 
     def note(self, name: str, actual: Array, expected: Array) -> None:
         """Keep the error of a quantity; a wrong shape is an infinite one."""
@@ -248,13 +241,9 @@ class _Comparison:
         """Inverse and forward dynamics, reactions: where the drives determine them."""
         m, s, ours, guess = self.module, self.state, self.ours, self.guess
         motion = m.forward_dynamics(s.X, s.V, ours.tau, wrench=s.wrench, **guess)
-        expected = _forward(self.manipulator, ours, s)
+        expected = accelerated(self.manipulator, ours, ours.tau)
         self.note("forward", motion[0] if m.NC else motion, expected)
-        if not _determined(self.manipulator, ours):
-            found = m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench, **guess)
-            found = found[0] if m.NC else found
-            # Too few drives: no forces give any A; the answer has to say so.
-            self.verdict.note("tau of too few drives", 0.0 if np.isnan(found).all() else np.inf)
+        if not are_held(np.hstack([ours.H, ours.Hk]), passive_extra_rows(self.manipulator)):
             return
         found = m.inverse_dynamics(s.X, s.V, s.A, wrench=s.wrench, **guess)
         self.note("tau", found[0] if m.NC else found, ours.tau)
@@ -288,36 +277,6 @@ def _span(mine: Array, theirs: Array) -> float:
     return relative_error(theirs @ match, mine)
 
 
-def _determined(manipulator: Manipulator, state: Result) -> bool:
-    """Whether drives and constraints reach every direction."""
-    passive = passive_extra_rows(manipulator)
-    rows = [row for row in range(state.Z.size) if row not in passive]
-    drives = np.hstack([state.H, state.Hk])[rows]
-    values = np.linalg.svd(drives, compute_uv=False)
-    return len(values) == len(rows) and bool(values[-1] > RANK_TOLERANCE * values[0])
-
-
-def _open(state: Result, passive: list[int]) -> bool:
-    """Whether the forces of drives and constraints are open: redundant or too few drives.
-
-    Where by structure they act on passive coordinates, these are open then too, even if at this
-    geometry the action happens to vanish, as about the common centre of a wrist.
-    """
-    drives = np.hstack([state.H, state.Hk])
-    reached = np.abs(drives).max(axis=1) > RANK_TOLERANCE
-    others = [row for row in np.flatnonzero(reached) if row not in passive]
-    return len(others) != drives.shape[1]
-
-
-def _forward(manipulator: Manipulator, ours: Result, state: State) -> Array:
-    """A under the oracle's tau: from reduced equations, without multipliers."""
-    N, c = admissible(ours)
-    load = np.zeros_like(ours.Z)
-    load[: state.wrench.size] = state.wrench
-    force = N.T @ (ours.H @ ours.tau + load - ours.Z - ours.M @ c)
-    return np.asarray(c + N @ np.linalg.solve(N.T @ ours.M @ N, force))
-
-
 _C_FUNCTIONS: dict[str, Callable[[Any, State, Array, dict[str, Array]], Any]] = {
     "inverse_kinematics": lambda m, s, tau, q0: m.inverse_kinematics(s.X, **q0),
     "joint_rates": lambda m, s, tau, q0: m.joint_rates(s.X, s.V, **q0),
@@ -328,13 +287,18 @@ _C_FUNCTIONS: dict[str, Callable[[Any, State, Array, dict[str, Array]], Any]] = 
     "inverse_dynamics": lambda m, s, tau, q0: m.inverse_dynamics(
         s.X, s.V, s.A, wrench=s.wrench, **q0
     ),
+    "inverse_dynamics_weighted": lambda m, s, tau, q0: m.inverse_dynamics(
+        s.X, s.V, s.A, wrench=s.wrench, weights=np.linspace(1.0, 2.0, m.NU), **q0
+    ),
     "forward_dynamics": lambda m, s, tau, q0: m.forward_dynamics(
         s.X, s.V, tau, wrench=s.wrench, **q0
     ),
     "leg_reactions": lambda m, s, tau, q0: m.leg_reactions(s.X, s.V, s.A, wrench=s.wrench, **q0),
     "energy": lambda m, s, tau, q0: m.energy(s.X, s.V, **q0),
     "Hk": lambda m, s, tau, q0: m.Hk(s.X, **q0),
-    "complete_acceleration": lambda m, s, tau, q0: m.complete_acceleration(s.X, s.V, s.A, **q0),
+    "complete_acceleration": lambda m, s, tau, q0: m.complete_acceleration(
+        s.X, s.V, s.A, wrench=s.wrench, **q0
+    ),
     "constraint_bias": lambda m, s, tau, q0: m.constraint_bias(s.X, s.V, **q0),
 }
 
@@ -345,7 +309,8 @@ def _judge_c(bundle: Bundle, module: Any, verdict: Verdict, states: list[State])
         library = CLibrary(bundle, Path(folder), flags=("-O0",))
         for state in states:
             tau = np.random.default_rng(1).uniform(-20.0, 20.0, module.NU)
-            arguments = {**state._asdict(), "tau": tau, "q0": state.q}
+            weights = np.linspace(1.0, 2.0, module.NU)
+            arguments = {**state._asdict(), "tau": tau, "q0": state.q, "weights": weights}
             guess = {"q0": state.q} if verdict.iterated else {}
             for name, call in _C_FUNCTIONS.items():
                 if name not in library.api:

@@ -22,6 +22,10 @@ from functools import partial
 import numpy as np
 
 from pne_sym.model.manipulator import Manipulator
+from tests.oracle.closure import OracleError
+from tests.oracle.coordinates import extra_indices, passive_extra_rows, task_size
+from tests.oracle.forces import are_held, rank
+from tests.oracle.projection import project
 from tests.random.drawing import describe, draw
 from tests.random.judging import TOLERANCE, Verdict, judge
 
@@ -70,9 +74,11 @@ class Outcome:
         )
 
 
-def outcome(seed: int, *, light: bool = False, with_c: bool = True) -> Outcome:
+def outcome(
+    seed: int, *, light: bool = False, with_c: bool = True, anywhere: bool = True
+) -> Outcome:
     """Draw and judge the mechanism of a seed."""
-    manipulator = draw(seed, light=light)
+    manipulator = draw(seed, light=light, anywhere=anywhere)
     known = seed, describe(manipulator), features(manipulator)
     start = time.perf_counter()
     try:
@@ -101,8 +107,28 @@ def features(manipulator: Manipulator) -> frozenset[str]:
             *("driven extra" if joint.actuated else "passive extra" for joint in joints
               if joint.extra),
             *("massless link" for joint in joints if joint.link.is_massless),
+            *_ranks(manipulator),
         }
     )  # fmt: skip
+
+
+def _ranks(manipulator: Manipulator) -> set[str]:
+    """What the drives hold at home."""
+    twist = task_size(manipulator.space) + len(extra_indices(manipulator))
+    home = np.array(manipulator.home.X), np.array(manipulator.home.q)
+    try:
+        state = project(manipulator, *home, np.zeros(twist))
+    except OracleError:
+        return set()
+    K, passive = np.hstack([state.H, state.Hk]), passive_extra_rows(manipulator)
+    if not are_held(K, passive):
+        return {"too few drives"}
+    found = {"redundant drives"} if K.shape[1] > rank(K) else set()
+    if passive:
+        least = twist - len(passive)
+        what = "all" if rank(K) == twist else "some" if rank(K) > least else "none"
+        found.add(f"passive extra, {what} held by surplus drives")
+    return found
 
 
 @dataclass

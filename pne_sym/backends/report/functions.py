@@ -12,7 +12,7 @@ from pne_sym.backends.report.markdown import table
 from pne_sym.backends.report.names import leg_title
 from pne_sym.backends.report.view import Statement, Table
 from pne_sym.backends.report.words import FUNCTIONS
-from pne_sym.derivation import Trouble
+from pne_sym.derivation import Coordinates, Trouble
 from pne_sym.program.count import count_block, count_function
 from pne_sym.program.ir import Block, Counts
 
@@ -39,7 +39,8 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
         r"$`\mathbf R`$; M is never formed.",
         (f"{unknown} = {_R} - {_W},", r"\qquad", *required),
     )
-    if sizes["NU"] + sizes["NC"] > sizes["NV"]:
+    actuation = bundle.coordinates.actuation
+    if actuation.is_determined and sizes["NU"] + sizes["NC"] > actuation.rank:
         yield Statement(
             "There are more unknowns than equations; of all solutions the smallest is taken.", ()
         )
@@ -62,16 +63,70 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
             "**Forward dynamics** solves the equations of motion for the acceleration:",
             (rf"\mathbf M\,\mathbf A = \mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z",),
         )
-    if any(
-        joint.extra and not joint.actuated
-        for leg in bundle.manipulator.legs
-        for joint in leg.joints
-    ):
+    yield from _passive_statements(bundle.coordinates)
+
+
+def _passive_statements(coordinates: Coordinates) -> Iterator[Statement]:
+    """What actuators leave to themselves: by the generic rank of [H Hk]."""
+    a, drives = coordinates.actuation, _drives(coordinates)
+    size = coordinates.sizes["NV"]
+    if not a.is_determined:
+        yield Statement(
+            f"**Too few actuators**: for almost all parameters and poses, {drives} cannot hold all "
+            "rows that are to hold. No forces give any acceleration; inverse dynamics is NaN.",
+            (),
+        )
+    elif a.passive and not a.idle:
+        yield Statement(
+            "**Extra coordinates without a drive** are held by the drives of other joints: "
+            f"{drives} has rank {size} for almost all parameters and poses, so that all rows are "
+            "solved, and any of their accelerations has forces.",
+            (),
+        )
+    elif a.passive and not a.is_coupled:
         yield Statement(
             "**Extra coordinates without a drive** follow from their own rows (Eq. 7); "
             "`complete_acceleration` fills in their accelerations before inverse dynamics:",
             (r"\mathbf M_{yy}\,\ddot{\mathbf y} = -\mathbf M_{yx}\,\mathbf A_x - \mathbf Z_y",),
         )
+    elif a.passive:
+        yield from _coupled_statements(coordinates)
+
+
+def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
+    """Passive extra coordinates that actuators act on, but do not hold."""
+    a, drives = coordinates.actuation, _drives(coordinates)
+    unique = len(a.passive) == a.idle
+    k = r"\mathbf H & \mathbf H_k" if coordinates.sizes["NC"] else r"\mathbf H"
+    gap = rf"\mathbf N^{{\mathsf T}}\,(\mathbf M\,\mathbf A + \mathbf Z - {_W})"
+    change = r"\delta\ddot{\mathbf y}"
+    least = (
+        rf"{change}^{{\mathsf T}}\,\mathbf M_{{yy}}\,{change} \rightarrow \min,",
+        rf"\qquad \mathbf N^{{\mathsf T}}\,\mathbf M_{{\cdot y}}\,{change} = -{gap}",
+    )
+    yield Statement(
+        f"**Extra coordinates without a drive**: {drives} acts on their rows too, but has rank "
+        f"{a.rank} of {coordinates.sizes['NV']} for almost all parameters and poses. With columns "
+        r"$`\mathbf N`$ that span what it leaves out, an acceleration has forces only where",
+        (
+            rf"\mathbf N^{{\mathsf T}}\begin{{bmatrix}}{k}\end{{bmatrix}} = \mathbf 0,",
+            rf"\qquad {gap} = \mathbf 0.",
+        ),
+    )
+    yield Statement(
+        r"`complete_acceleration` changes the entries $`\ddot{\mathbf y}`$ of these coordinates so "
+        "that this holds" + ("." if unique else ", by the least change in the metric of M:"),
+        () if unique else least,
+    )
+    yield Statement(
+        "Without that, inverse dynamics holds all other rows, and these "
+        + ("as they follow." if not a.surplus else "in least squares."),
+        (),
+    )
+
+
+def _drives(coordinates: Coordinates) -> str:
+    return "[H H_k]" if coordinates.sizes["NC"] else "H"
 
 
 def troubles(bundle: Bundle) -> tuple[str, ...]:
@@ -103,7 +158,7 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         )
     lines += [
         (
-            f"**Singular drives**: {'[H H_k]' if constrained else 'H'} has no full rank; inverse "
+            f"**Singular drives**: {_drives(bundle.coordinates)} has {_lacking(bundle)}; inverse "
             "dynamics needs that, M, Z and H do not."
         ),
         "**Singular masses**: "
@@ -118,6 +173,12 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
         ),
     ]
     return tuple(lines)
+
+
+def _lacking(bundle: Bundle) -> str:
+    """The rank that is missing where drives are singular."""
+    a = bundle.coordinates.actuation
+    return f"not the rank {a.rank} of other poses" if a.passive and a.idle else "no full rank"
 
 
 def _links(ids: list[str]) -> str:

@@ -1,0 +1,238 @@
+"""Generic ranks of the force transformation, from the motions that the loops allow.
+
+A motion that the loops allow has Hk^T V = 0, and H^T V are then the rates of its actuated joints:
+what [H Hk]^T takes to zero are the motions with all actuated joints at rest.  So the rank of
+[H Hk] is NV less the number of these; rows are independent where no motion that leaves all other
+coordinates at rest is among them.  Nothing of this needs the equations of motion.
+
+A rank is generic if it is the largest: it is taken over home, poses around it, and other lengths,
+points and frames.  A geometry that the loops do not allow (a wrist whose axes do not meet) has more
+constraints, or does not close, and is left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from pne_sym.derivation import Actuation
+from pne_sym.mechanics.mobility import DEPENDENT, closure_at_home, mobility, null_space
+from pne_sym.model.closure import leg_gap, unreachable
+from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
+from pne_sym.model.loops import Loops, all_closed
+from pne_sym.model.manipulator import Home, Joint, Leg, Manipulator, Matrix3, Space, Vector3
+
+_POSES = 2
+"""Poses beside home, and with each other geometry."""
+_TURN, _SHIFT = 0.4, 0.15
+"""How far a pose is from home: rad, and lengths as a fraction of the mechanism's size."""
+_CHANGE = 0.12
+"""By which fraction lengths are changed in other geometries."""
+_GAP = 1e-9
+"""Largest gap of closed loops, as a fraction of the mechanism's size."""
+_ATTEMPTS = 4
+"""Steps are halved so often until the loops close."""
+
+
+@dataclass(frozen=True)
+class _Ranks:
+    """Of one geometry at one pose; see `Actuation`."""
+
+    rank: int
+    force_rank: int
+    is_determined: bool
+    is_coupled: bool
+
+
+def actuation(manipulator: Manipulator) -> Actuation:
+    """What the actuators of a manipulator determine, for almost all parameters and poses.
+
+    The random numbers are always the same ones.  Legs must be regular at home, and constraints
+    independent there.
+
+    >>> from pne_sym import manipulators
+    >>> found = actuation(manipulators.load("stewart_sps"))
+    >>> found.rank, found.passive, found.is_coupled
+    (6, (6, 7, 8, 9, 10, 11), False)
+    """
+    twist = len(TASK_SPACES[manipulator.space].components)
+    extra = [joint for leg in manipulator.legs for joint in leg.joints if joint.extra]
+    passive = tuple(k for k, joint in enumerate(extra, twist) if not joint.actuated)
+    size, seen = twist + len(extra), list[_Ranks]()
+    actuated = sum(joint.actuated for leg in manipulator.legs for joint in leg.joints)
+    for sample in _samples(manipulator):
+        seen.append(_ranks(sample, size))
+        if seen[-1].rank == size and seen[-1].force_rank == min(size, actuated):
+            break  # they cannot be larger
+    return Actuation(
+        rank=max(s.rank for s in seen),
+        force_rank=max(s.force_rank for s in seen),
+        passive=passive,
+        others=tuple(k for k in range(size) if k not in passive),
+        is_determined=any(s.is_determined for s in seen),
+        is_coupled=any(s.is_coupled for s in seen),
+    )
+
+
+def _ranks(m: Manipulator, size: int) -> _Ranks:
+    joints = [joint for leg in m.legs for joint in leg.joints]
+    actuated = np.array([joint.actuated for joint in joints], dtype=bool)
+    passive = np.array([joint.extra and not joint.actuated for joint in joints], dtype=bool)
+    motions, twist = null_space(closure_at_home(m)), len(TASK_SPACES[m.space].components)
+    platform, rates = motions[:twist], motions[twist:]
+    freedoms, held = motions.shape[1], _rank(rates[actuated])
+    return _Ranks(
+        rank=size - freedoms + held,
+        force_rank=held if freedoms == size else _force_rank(m),
+        is_determined=_rank(rates[actuated | passive]) == freedoms,
+        # They move alone, the platform and what is actuated at rest.
+        is_coupled=freedoms - _rank(np.vstack([platform, rates[actuated]])) < passive.sum(),
+    )
+
+
+def _force_rank(m: Manipulator) -> int:
+    """Largest rank of H where legs restrict the platform.
+
+    Rates of the joints of such a leg at a velocity that its constraints do not allow are a matter
+    of choice: any left inverse of the leg's Jacobian will do, so one is drawn.
+    """
+    loops, rng = Loops(m.space, m.legs, m.fixed_centre), np.random.default_rng(0)
+    pose, twist = pose_at(m.space, m.home.X, m.fixed_centre), TASK_SPACES[m.space].components
+    q, extras = np.array(m.home.q), np.cumsum([0, *loops.extra])
+    columns = []
+    for leg, s in zip(m.legs, loops.slices(), strict=True):
+        _, by_q, by_twist = leg_gap(leg, q[s], pose)
+        own = ~loops.extra[s]
+        rates = np.zeros((len(leg.joints), len(twist) + int(extras[-1])))
+        for j in np.flatnonzero(~own):
+            rates[j, len(twist) + extras[s.start + j]] = 1.0
+        demand = by_q @ rates
+        demand[:, : len(twist)] += by_twist[:, twist]
+        idle = unreachable(by_q[:, own])
+        choice = np.linalg.pinv(by_q[:, own]) + rng.uniform(-1, 1, (own.sum(), len(idle))) @ idle
+        rates[own] = -choice @ demand
+        columns.append(rates[[joint.actuated for joint in leg.joints]])
+    return _rank(np.vstack(columns))
+
+
+def _rank(rows: Array) -> int:
+    if not rows.size:
+        return 0
+    values = np.linalg.svd(rows, compute_uv=False)
+    return int(np.sum(values > DEPENDENT * max(1.0, float(values[0]))))
+
+
+# ---- samples ---------------------------------------------------------------------------------
+
+
+def _samples(m: Manipulator) -> Iterator[Manipulator]:
+    """Geometries and poses of the same structure, each as a manipulator whose home it is."""
+    rng, constraints = np.random.default_rng(0), mobility(m).constraints
+    yield m
+    for points, frames in ((False, False), (True, False), (False, True), (True, True)):
+        geometry = _changed(m, rng, points=points, frames=frames) if points or frames else m
+        start = _closed(geometry, np.array(m.home.X), np.array(m.home.q))
+        if start is None or not _is_alike(start, constraints):
+            continue
+        for _ in range(_POSES):
+            found = _elsewhere(start, rng)
+            if found is not None and _is_alike(found, constraints):
+                yield found
+
+
+def _is_alike(sample: Manipulator, constraints: int) -> bool:
+    """Whether legs are regular, and constraints as many and as independent as at home."""
+    found = mobility(sample)
+    return (found.constraints, found.overconstrained, found.singular_legs) == (constraints, 0, ())
+
+
+def _size(m: Manipulator) -> float:
+    """A length of the mechanism."""
+    points = [p for leg in m.legs for p in (leg.base_point, leg.platform_point)]
+    offsets = [joint.offset for leg in m.legs for joint in leg.joints]
+    shifts = [leg.platform_joint.offset for leg in m.legs]
+    lengths = np.linalg.norm([*points, *offsets, *shifts], axis=1)
+    return float(lengths.max()) or 1.0
+
+
+def _closed(m: Manipulator, X: Array, q: Array) -> Manipulator | None:
+    """The manipulator with its home at the closure next to these coordinates; None if none."""
+    loops = Loops(m.space, m.legs, m.fixed_centre)
+    X, q = all_closed(loops, X, q)
+    if not max(loops.gaps(X, q)) < _GAP * max(1.0, _size(m)):
+        return None
+    X = np.concatenate([X[: loops.size], q[loops.extra]])
+    return replace(m, home=Home(tuple(X.tolist()), tuple(q.tolist())))
+
+
+def _elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
+    """The same mechanism moved a random way along its freedoms."""
+    motions, twist = null_space(closure_at_home(m)), len(TASK_SPACES[m.space].components)
+    step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])
+    loops, space = Loops(m.space, m.legs, m.fixed_centre), TASK_SPACES[m.space]
+    shifts = [k < 3 for k in space.components] + [not joint.turns for joint in loops.joints]
+    sizes = np.where(shifts, _SHIFT * _size(m), _TURN)
+    step /= float(np.max(np.abs(step) / sizes))
+    X, q = np.array(m.home.X), np.array(m.home.q)
+    for _ in range(_ATTEMPTS):
+        pose = displaced(m.space, X[: loops.size], step[:twist])
+        found = _closed(m, pose, q + step[twist:])
+        if found is not None:
+            return found
+        step /= 2.0
+    return None
+
+
+def _changed(
+    m: Manipulator, rng: np.random.Generator, *, points: bool, frames: bool
+) -> Manipulator:
+    """Another geometry: of lengths; of the legs' points; of their base frames.
+
+    Directions within a leg stay.  An offset along the axis of a joint, by which a leg can spin
+    idly, is a matter of design, whether or not the axes of a frame are drawn along it.
+    """
+    size, planar = _size(m), TASK_SPACES[m.space].planar
+
+    def moved(point: Vector3) -> Vector3:
+        shift = _CHANGE * size * rng.uniform(-1.0, 1.0, 3) * (1.0, 1.0, 0.0 if planar else 1.0)
+        return _vector(np.array(point) + shift)
+
+    def factor() -> float:
+        return 1.0 + _CHANGE * float(rng.uniform(-1.0, 1.0))
+
+    def scaled(vector: Vector3) -> Vector3:
+        return _vector(np.array(vector) * factor())
+
+    def joint(old: Joint) -> Joint:
+        return replace(old, offset=scaled(old.offset), pitch=old.pitch * factor())
+
+    def changed(leg: Leg) -> Leg:
+        frame, end = np.array(leg.base_frame), leg.platform_joint
+        seated = m.space is Space.POINT or not points
+        return replace(
+            leg,
+            joints=tuple(joint(each) for each in leg.joints),
+            base_point=moved(leg.base_point) if points else leg.base_point,
+            base_frame=_matrix(_turn(rng, planar=planar) @ frame) if frames else leg.base_frame,
+            platform_joint=replace(end, offset=scaled(end.offset)),
+            platform_point=leg.platform_point if seated else moved(leg.platform_point),
+        )
+
+    return replace(m, legs=tuple(changed(leg) for leg in m.legs))
+
+
+def _turn(rng: np.random.Generator, *, planar: bool) -> Array:
+    axis = np.array([0.0, 0.0, 1.0]) if planar else rng.normal(size=3)
+    return rotation_about(axis / np.linalg.norm(axis), _CHANGE * float(rng.uniform(-1.0, 1.0)))
+
+
+def _vector(values: Array) -> Vector3:
+    x, y, z = map(float, values)
+    return x, y, z
+
+
+def _matrix(values: Array) -> Matrix3:
+    x, y, z = (_vector(row) for row in values)
+    return x, y, z
