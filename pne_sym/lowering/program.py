@@ -13,6 +13,7 @@ from pne_sym.lowering.builder import Atom, Builder, Statement
 from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.inputs import leg_inputs, unpack
+from pne_sym.lowering.public import public_functions
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
 from pne_sym.program.ir import (
     Assignment,
@@ -80,7 +81,7 @@ def lower(derivation: Derivation) -> Program:
     table = derivation.parameters
     outside = {name: parameter.leg_type or "" for name, (parameter, _) in table.entries.items()}
     verify(program, outside | {name: leg for name, (leg, _) in table.branches.items()})
-    return program
+    return replace(program, public=public_functions(derivation, program))
 
 
 def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:

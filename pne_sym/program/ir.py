@@ -9,6 +9,8 @@ from typing import Any
 
 import sympy as sp
 
+from pne_sym.program.public import PublicFunction
+
 
 class Kind(enum.IntEnum):
     """When a value can be computed, in order of execution."""
@@ -234,6 +236,7 @@ class Program:
         leg_counts: number of legs by leg type.
         closures: leg types whose displacements are found by iteration.
         given: (position in q, position in X) of the extra coordinates.
+        public: what users call, as steps over the functions.
     """
 
     prepare: tuple[Block, ...]
@@ -243,3 +246,4 @@ class Program:
     leg_counts: dict[str, int] = field(default_factory=dict)
     closures: tuple[Closure, ...] = ()
     given: tuple[tuple[int, int], ...] = ()
+    public: tuple[PublicFunction, ...] = ()

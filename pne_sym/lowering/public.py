@@ -1,0 +1,462 @@
+"""The public functions of a derivation, as steps over the functions of its program.
+
+Reference: inverse dynamics Eq. 3, equations of motion Eqs. 5 to 7, constraints Eqs. 36, 37.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from pne_sym.derivation import Coordinates, Derivation
+from pne_sym.program.ir import Program
+from pne_sym.program.operations import OPERATIONS
+from pne_sym.program.public import (
+    Apply,
+    Argument,
+    Default,
+    PublicFunction,
+    Run,
+    Search,
+    Step,
+    Value,
+    verify_steps,
+)
+
+_SIZES = {
+    "X": "NQ", "X0": "NQ", "V": "NV", "A": "NV", "tau": "NU", "q": "NJ", "q0": "NJ",
+    "q_actuated": "NU", "wrench": "NW", "weights": "NU", "Z": "NV",
+}  # fmt: skip
+_MEANINGS = {
+    "X": "pose, and extra coordinates",
+    "X0": "first guess of the pose",
+    "V": "velocity",
+    "A": "acceleration",
+    "tau": "actuator forces [N or N m]",
+    "q_actuated": "displacements of the actuated joints [m or rad]",
+    "wrench": "external wrench on the platform",
+    "weights": "positive weights of the actuator forces: least sum of weights tau^2",
+    "q0": "first guess of the displacements",
+}
+_DEFAULTS = {"wrench": Default.ZEROS, "weights": Default.ONES, "q0": Default.HOME_Q}
+
+
+def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFunction, ...]:
+    """All functions that users call, each after those that it uses.
+
+    Raises:
+        StepError: a function that does not hold together.
+    """
+    coordinates = derivation.coordinates
+    assert coordinates is not None
+    guessed = any(not t.is_closed for t in derivation.leg_types)
+    writer = _Writer(coordinates, program, guessed=guessed)
+    found = (*writer.of_program(), *writer.of_dynamics(), *writer.of_kinematics())
+    for function in found:
+        verify_steps(function)
+    return found
+
+
+class _Algorithm:
+    """Steps under construction; arrays get names of their own."""
+
+    def __init__(self) -> None:
+        self.steps: list[Step] = []
+        self._made = 0
+
+    def run(self, function: str, program: Program, *wanted: str) -> list[Value]:
+        """Run a function of the program; returns some of its arrays."""
+        arrays = program.functions[function].arrays
+        values = {a: Value(f"{a}_of_{function}", program.shapes[a]) for a in arrays}
+        self.steps.append(Run(function, tuple(values.values())))
+        return [values[a] for a in wanted]
+
+    def apply(self, operation: str, *operands: Value, numbers: Iterable[int] = ()) -> Value:
+        """Apply an operation with one result."""
+        (value,) = self.apply_all(operation, *operands, numbers=numbers)
+        return value
+
+    def apply_all(
+        self, operation: str, *operands: Value, numbers: Iterable[int] = ()
+    ) -> tuple[Value, ...]:
+        """Apply an operation."""
+        fixed = tuple(numbers)
+        targets = []
+        for shape in OPERATIONS[operation].shapes(tuple(o.shape for o in operands), fixed):
+            self._made += 1
+            targets.append(Value(f"{operation}_{self._made}", shape))
+        self.steps.append(Apply(operation, operands, tuple(targets), fixed))
+        return tuple(targets)
+
+
+class _Writer:
+    """Writes the public functions of a model."""
+
+    def __init__(self, coordinates: Coordinates, program: Program, *, guessed: bool) -> None:
+        self.c, self.n, self.program = coordinates, coordinates.sizes, program
+        self.guessed = guessed
+        self.constrained = self.n["NC"] > 0
+        self.every = tuple(range(self.n["NV"]))
+
+    # ---- arguments ---------------------------------------------------------------------------
+
+    def given(self, name: str) -> Argument:
+        """An input."""
+        key = _SIZES[name]
+        value = Value(name, (self.n[key],))
+        return Argument(value, (key,), _MEANINGS[name], _DEFAULTS.get(name))
+
+    def made(self, value: Value, name: str, meaning: str, *dimensions: str) -> Argument:
+        """An output: an array under the name that users know."""
+        return Argument(Value(value.name, value.shape), dimensions, f"{name}: {meaning}")
+
+    def function(
+        self,
+        name: str,
+        meaning: str,
+        inputs: str,
+        algorithm: _Algorithm,
+        *outputs: Argument,
+        group: str = "dynamics",
+        **more: object,
+    ) -> PublicFunction:
+        """A function of the model; q0 comes last where displacements are iterated."""
+        names = [*inputs.split(), *(["q0"] if self.guessed else [])]
+        arguments = tuple(self.given(n) for n in names)
+        steps = tuple(algorithm.steps)
+        return PublicFunction(name, meaning, arguments, outputs, steps, group, **more)  # type: ignore[arg-type]
+
+    # ---- the program's own functions -----------------------------------------------------------
+
+    def of_program(self) -> list[PublicFunction]:
+        """What the program computes as it is."""
+        rows = (
+            ("M", "Inertia matrix M.", "X", "M", ("NV", "NV"), "dynamics"),
+            ("Z", "Velocity and gravity terms Z.", "X V", "Z", ("NV",), "dynamics"),
+            ("H", "Force transformation H: actuators to task space.", "X", "H", ("NV", "NU"),
+             "dynamics"),
+            ("Hk", "Directions Hk of the constraint forces lambda.", "X", "Hk", ("NV", "NC"),
+             "constraints"),
+            ("constraints", "Residuals of the constraints; zero where the loops close.", "X",
+             "constraints", ("NC",), "constraints"),
+            ("constraint_bias", "The vector bias in Hk^T A + bias = 0.", "X V",
+             "constraint_bias", ("NC",), "constraints"),
+            ("inverse_kinematics", "Displacements q of all joints.", "X", "q", ("NJ",),
+             "kinematics"),
+            ("joint_rates", "Rates of all joints.", "X V", "qd", ("NJ",), "kinematics"),
+            ("joint_accelerations", "Accelerations of all joints.", "X V A", "qdd", ("NJ",),
+             "kinematics"),
+        )  # fmt: skip
+        found = []
+        for name, meaning, inputs, array, dimensions, group in rows:
+            if name in self.program.functions:
+                a = _Algorithm()
+                (value,) = a.run(name, self.program, array)
+                out = self.made(value, array, meaning, *dimensions)
+                found.append(
+                    self.function(name, meaning, inputs, a, out, group=group, counted=name)
+                )
+        a = _Algorithm()
+        M, Z, H = a.run("dynamics", self.program, "M", "Z", "H")
+        outputs = (
+            self.made(M, "M", "inertia matrix", "NV", "NV"),
+            self.made(Z, "Z", "velocity and gravity terms", "NV"),
+            self.made(H, "H", "force transformation", "NV", "NU"),
+        )
+        meaning = "M, Z and H together, sharing the work."
+        found.append(self.function("dynamics", meaning, "X V", a, *outputs, counted="dynamics"))
+        return found
+
+    # ---- equations of motion ---------------------------------------------------------------------
+
+    def of_dynamics(self) -> list[PublicFunction]:
+        """What solves the equations of motion, and what is made of the solution."""
+        found = [
+            self._inverse_dynamics(),
+            self._forward_dynamics(),
+            self._complete_acceleration(),
+            self._leg_reactions(),
+            self._energy(),
+        ]
+        return [*found, self._null_space()] if self.n["NU"] else found
+
+    def _external(self, a: _Algorithm) -> Value:
+        return a.apply("extend", self.given("wrench").value, numbers=[self.n["NV"]])
+
+    def _forces(
+        self, a: _Algorithm, required: Value, drives: list[Value], *, weighted: bool = False
+    ) -> tuple[Value, ...]:
+        """tau, and lambda where there are constraints, with H tau + Hk lambda = required."""
+        facts = self.c.actuation
+        H, Hk = drives[0], drives[1] if self.constrained else None
+        if not facts.is_determined:
+            none = a.apply("impossible", required, numbers=[self.n["NU"]])
+            return (
+                (none,)
+                if Hk is None
+                else (none, a.apply("impossible", required, numbers=[self.n["NC"]]))
+            )
+        f = required
+        if facts.surplus:
+            H, Hk, f = self._attainable(a, H, Hk, f)
+        elif facts.solved != self.every:
+            H, f = (a.apply("take", v, numbers=facts.solved) for v in (H, f))
+            Hk = a.apply("take", Hk, numbers=facts.solved) if Hk else None
+        square = self.n["NU"] + self.n["NC"] == H.shape[0]
+        if square:
+            if Hk is None:
+                return (a.apply("solve", H, f),)
+            both = a.apply("solve", a.apply("beside", H, Hk), f)
+            return a.apply_all("split", both, numbers=[self.n["NU"]])
+        left = across = None
+        if Hk is not None:
+            left, across = a.apply_all("resolve", Hk, numbers=[self.n["NC"]])
+        tau = self._least(a, H, f, across, weighted=weighted)
+        if Hk is None or left is None:
+            return (tau,)
+        rest = a.apply("subtract", f, a.apply("times", H, tau))
+        system = a.apply("product", left, Hk)
+        return tau, a.apply("solve", system, a.apply("times", left, rest))
+
+    def _least(
+        self, a: _Algorithm, H: Value, f: Value, across: Value | None, *, weighted: bool
+    ) -> Value:
+        """tau of least (weighted) norm, on rows that constraint forces do not act on."""
+        scale = a.apply("inverse_root", self.given("weights").value) if weighted else None
+        matrix = a.apply("scale_columns", H, scale) if scale else H
+        if across:
+            matrix, f = a.apply("product", across, matrix), a.apply("times", across, f)
+        least = a.apply("least_norm", matrix, f)
+        return a.apply("multiply", scale, least) if scale else least
+
+    def _attainable(
+        self, a: _Algorithm, H: Value, Hk: Value | None, f: Value
+    ) -> tuple[Value, Value | None, Value]:
+        """Combinations of rows that resolve the drives, and the force nearest to their range."""
+        facts = self.c.actuation
+        drives = a.apply("beside", H, Hk) if Hk else H
+        rows, idle = a.apply_all("resolve", drives, numbers=[facts.rank])
+        gap = a.apply("negative", a.apply("times", idle, f))
+        effect = a.apply("take_columns", idle, numbers=facts.passive)
+        change = a.apply("least_norm", effect, gap)
+        f = a.apply("add_at", f, change, numbers=facts.passive)
+        Hk = a.apply("product", rows, Hk) if Hk else None
+        return a.apply("product", rows, H), Hk, a.apply("times", rows, f)
+
+    def _inverse_dynamics(self) -> PublicFunction:
+        a = _Algorithm()
+        names = ["required", "H", *(["Hk"] if self.constrained else [])]
+        required, *drives = a.run("required", self.program, *names)
+        needed = a.apply("subtract", required, self._external(a))
+        outputs = self._force_outputs(*self._forces(a, needed, drives, weighted=True))
+        return self.function(
+            "inverse_dynamics",
+            "Actuator forces tau for the acceleration A, by Eq. 3.",
+            "X V A wrench weights",
+            a,
+            *outputs,
+            counted="required",
+            also="the solution of the linear equations",
+        )
+
+    def _force_outputs(self, tau: Value, *rest: Value) -> list[Argument]:
+        found = [self.made(tau, "tau", "actuator forces [N or N m]", "NU")]
+        return found + [self.made(v, "lambda", "constraint forces [N or N m]", "NC") for v in rest]
+
+    def _forward_dynamics(self) -> PublicFunction:
+        a = _Algorithm()
+        names = ["M", "Z", "H", *(["Hk", "constraint_bias"] if self.constrained else [])]
+        M, Z, H, *constraint = a.run("dynamics", self.program, *names)
+        force = a.apply("times", H, self.given("tau").value)
+        force = a.apply("subtract", a.apply("add", force, self._external(a)), Z)
+        if constraint:
+            Hk, bias = constraint
+            right = a.apply("join", force, a.apply("negative", bias))
+            both = a.apply("solve", a.apply("saddle", M, Hk), right)
+            A, lam = a.apply_all("split", both, numbers=[self.n["NV"]])
+            outputs = [self.made(lam, "lambda", "constraint forces [N or N m]", "NC")]
+        else:
+            A, outputs = a.apply("solve", M, force), []
+        return self.function(
+            "forward_dynamics",
+            "Acceleration A under the actuator forces tau and the wrench.",
+            "X V tau wrench",
+            a,
+            self.made(A, "A", "acceleration", "NV"),
+            *outputs,
+            counted="dynamics",
+            also="the solution of the linear equations",
+        )
+
+    def _complete_acceleration(self) -> PublicFunction:
+        facts, a = self.c.actuation, _Algorithm()
+        A = self.given("A").value
+        if not facts.is_determined and facts.passive:
+            done = a.apply("impossible", A, numbers=[self.n["NV"]])
+        elif facts.idle == 0 or not facts.is_determined:
+            done = a.apply("same", A)
+        else:
+            done = self._completed(a, A)
+        return self.function(
+            "complete_acceleration",
+            "A with the entries of passive extra coordinates that the others allow.",
+            "X V A wrench",
+            a,
+            self.made(done, "completed", "acceleration", "NV"),
+        )
+
+    def _completed(self, a: _Algorithm, A: Value) -> Value:
+        facts = self.c.actuation
+        unique = facts.idle == len(facts.passive)
+        known = a.apply("clear_at", A, numbers=facts.passive) if unique else A
+        names = ["M", "Z", "H", *(["Hk"] if self.constrained else [])]
+        M, Z, *drives = a.run("dynamics", self.program, *names)
+        needed = a.apply("add", a.apply("times", M, known), Z)
+        needed = a.apply("subtract", needed, self._external(a))
+        columns = a.apply("take_columns", M, numbers=facts.passive)
+        own = a.apply("take", columns, numbers=facts.passive)
+        if facts.is_coupled:
+            system = a.apply("beside", *drives) if self.constrained else drives[0]
+            _, idle = a.apply_all("resolve", system, numbers=[facts.rank])
+            effect, gap = a.apply("product", idle, columns), a.apply("times", idle, needed)
+        else:
+            effect, gap = own, a.apply("take", needed, numbers=facts.passive)
+        if unique:
+            change = a.apply("solve", effect, a.apply("negative", gap))
+        else:  # least change in the metric of M
+            zero = a.apply("extend", a.apply("take", A, numbers=[]), numbers=[len(facts.passive)])
+            system = a.apply("saddle", own, a.apply("transposed", effect))
+            both = a.apply("solve", system, a.apply("join", zero, a.apply("negative", gap)))
+            change, _ = a.apply_all("split", both, numbers=[len(facts.passive)])
+        return a.apply("add_at", known, change, numbers=facts.passive)
+
+    def _leg_reactions(self) -> PublicFunction:
+        a = _Algorithm()
+        names = ["required", "H", *(["Hk"] if self.constrained else [])]
+        required, *drives = a.run("required", self.program, *names)
+        needed = a.apply("subtract", required, self._external(a))
+        efforts = self._forces(a, needed, drives)
+        arrays = self.program.functions["legs"].arrays
+        shape = self.program.shapes["leg_force"]
+        found = dict(zip(arrays, a.run("legs", self.program, *arrays), strict=True))
+        forces = found.get("leg_force")
+        assert forces is not None
+        legs = {
+            "drive": [leg for leg, _ in self.c.actuators],
+            "constraint_direction": self.c.constraints,
+        }
+        for effort, (array, owners) in zip(efforts, legs.items(), strict=False):
+            forces = a.apply("add_forces", forces, effort, found[array], numbers=owners)
+        return self.function(
+            "leg_reactions",
+            "Force (and moment) of each leg on the platform at its platform joint, base axes.",
+            "X V A wrench",
+            a,
+            self.made(forces, "forces", "leg on platform [N, N m]", str(shape[0]), str(shape[1])),
+            counted="legs",
+            also="inverse dynamics",
+        )
+
+    def _energy(self) -> PublicFunction:
+        a = _Algorithm()
+        (M,) = a.run("M", self.program, "M")
+        (potential,) = a.run("potential", self.program, "potential")
+        kinetic = a.apply("half_form", self.given("V").value, M)
+        return self.function(
+            "energy",
+            "Kinetic and potential energy [J]; the latter is zero at the base origin.",
+            "X V",
+            a,
+            self.made(kinetic, "kinetic", "kinetic energy [J]"),
+            self.made(
+                a.apply("entry", potential, numbers=[0]), "potential", "potential energy [J]"
+            ),
+        )
+
+    def _null_space(self) -> PublicFunction:
+        a = _Algorithm()
+        (H,) = a.run("H", self.program, "H")
+        basis = a.apply("null_basis", H, numbers=[self.c.actuation.force_rank])
+        return self.function(
+            "null_space",
+            "Orthonormal basis of the tau with H tau = 0.",
+            "X",
+            a,
+            self.made(basis, "basis", "columns", "NU", str(basis.shape[1])),
+        )
+
+    # ---- searches --------------------------------------------------------------------------------
+
+    def of_kinematics(self) -> list[PublicFunction]:
+        """Poses that are searched for."""
+        found = [self._mismatch(), self._slope(), self._forward_kinematics()]
+        return [*found, *self._projection()] if self.constrained else found
+
+    def _mismatch(self) -> PublicFunction:
+        """By how much actuated joints and constraints miss."""
+        a, joints = _Algorithm(), [self.c.joints.index(j) for j in self.c.actuators]
+        (q,) = a.run("inverse_kinematics", self.program, "q")
+        own = a.apply("take", q, numbers=joints)
+        gap = a.apply("subtract", self.given("q_actuated").value, own)
+        turning = [k for k, j in enumerate(joints) if self.c.turning[j]]
+        if turning:
+            gap = a.apply("wrap_turns", gap, numbers=turning)
+        if self.constrained:
+            (residual,) = a.run("constraints", self.program, "constraints")
+            gap = a.apply("join", gap, a.apply("negative", residual))
+        out = self.made(gap, "gap", "of actuated joints, then of constraints", str(gap.size))
+        return self.function(
+            "mismatch", "Residual of the pose.", "X q_actuated", a, out, is_exported=False,
+            group="kinematics",
+        )  # fmt: skip
+
+    def _slope(self) -> PublicFunction:
+        """Transpose of the derivative of what is measured, by a displacement of the pose."""
+        a = _Algorithm()
+        (H,) = a.run("H", self.program, "H")
+        if self.constrained:
+            (Hk,) = a.run("Hk", self.program, "Hk")
+            H = a.apply("beside", H, Hk)
+        out = self.made(H, "slope", "columns: what is measured", "NV", str(H.shape[1]))
+        return self.function(
+            "slope", "Derivative of the residual, negative.", "X", a, out, is_exported=False,
+            group="kinematics",
+        )  # fmt: skip
+
+    def _forward_kinematics(self) -> PublicFunction:
+        a, X = _Algorithm(), Value("X_found", (self.n["NQ"],))
+        a.steps.append(Search("mismatch", "slope", self.given("X0").value, X, halving=True))
+        return self.function(
+            "forward_kinematics",
+            "X at which the actuated joints stand at q_actuated, by Gauss-Newton from X0.",
+            "q_actuated X0",
+            a,
+            self.made(X, "X", "pose", "NQ"),
+            group="kinematics",
+        )
+
+    def _projection(self) -> list[PublicFunction]:
+        residual = _Algorithm()
+        (gap,) = residual.run("constraints", self.program, "constraints")
+        gap = residual.apply("negative", gap)
+        slope = _Algorithm()
+        (Hk,) = slope.run("Hk", self.program, "Hk")
+        a, X = _Algorithm(), Value("X_found", (self.n["NQ"],))
+        a.steps.append(
+            Search("constraint_gap", "constraint_slope", self.given("X").value, X, halving=False)
+        )
+        return [
+            self.function(
+                "constraint_gap", "Residual of the constraints, negative.", "X", residual,
+                self.made(gap, "gap", "of the constraints", "NC"), is_exported=False,
+                group="constraints",
+            ),
+            self.function(
+                "constraint_slope", "Directions of the constraints.", "X", slope,
+                self.made(Hk, "slope", "columns", "NV", "NC"), is_exported=False,
+                group="constraints",
+            ),
+            self.function(
+                "project", "The nearest pose on which the constraints hold.", "X", a,
+                self.made(X, "projected", "pose", "NQ"), group="constraints",
+            ),
+        ]  # fmt: skip

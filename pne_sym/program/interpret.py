@@ -1,0 +1,207 @@
+"""Public functions of a program, evaluated step by step: what every back end must agree with."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pne_sym.program.evaluate import Array, Flags, Status, evaluate
+from pne_sym.program.ir import Program
+from pne_sym.program.iteration import close_loops
+from pne_sym.program.operations import OPERATIONS, finite
+from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Search
+
+SEARCH_STEPS, HALVINGS = 50, 12
+"""Steps of a search for a pose, and how often each may be halved."""
+FOUND, CLOSE = 1e-9, 1e-14
+"""A residual [m, rad] that counts as found, and one at which the search ends."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a public function gives.
+
+    Attributes:
+        outputs: arrays (states, *shape), in order; NaN where the status is not OK.
+        status: `Status` of every state.
+    """
+
+    outputs: tuple[Array, ...]
+    status: NDArray[np.int_]
+
+
+@dataclass(frozen=True)
+class PoseLayout:
+    """Where the parts of X stand.
+
+    Attributes:
+        position: number of entries of the position, which come first.
+        quaternion: the orientation is a quaternion, behind the position.
+    """
+
+    position: int
+    quaternion: bool
+
+    def moved(self, X: Array, step: Array) -> Array:
+        """X moved by small displacements: linear, then a rotation vector, then extra ones."""
+        if not self.quaternion:
+            return X + step
+        at = self.position
+        (q,) = OPERATIONS["turn_quaternion"]((X[:, at : at + 4], step[:, at : at + 3]), ())
+        return np.concatenate((X[:, :at] + step[:, :at], q, X[:, at + 4 :] + step[:, at + 3 :]), 1)
+
+
+class Interpreter:
+    """The public functions of a model at prepared parameters."""
+
+    def __init__(
+        self,
+        program: Program,
+        functions: Sequence[PublicFunction],
+        prepared: Mapping[str, Array],
+        home_q: Array,
+        layout: PoseLayout,
+    ) -> None:
+        self.program, self.prepared = program, prepared
+        self.functions = {f.name: f for f in functions}
+        self.home_q, self.layout = np.asarray(home_q, dtype=float), layout
+
+    def call(self, name: str, **arguments: Array) -> Answer:
+        """A public function at arguments (states, n); optional ones may be left out.
+
+        Raises:
+            KeyError: no such function, or a required argument is missing.
+        """
+        function = self.functions[name]
+        states = next(len(arguments[a.name]) for a in function.required)
+        values = {a.name: self._argument(a, arguments, states) for a in function.inputs}
+        state = _State(self, values, states)
+        for step in function.steps:
+            state.do(step)
+        outputs = [np.array(state.values[o.name]) for o in function.outputs]
+        status = state.finished(outputs)
+        for array in outputs:
+            array[status != Status.OK] = np.nan
+        return Answer(tuple(outputs), status)
+
+    def _argument(self, argument: Argument, given: Mapping[str, Array], states: int) -> Array:
+        name, shape, default = argument.name, argument.value.shape, argument.default
+        if name in given:
+            return np.broadcast_to(np.asarray(given[name], dtype=float), (states, *shape))
+        if default is None:
+            raise KeyError(name)
+        fill = {Default.ZEROS: np.zeros(shape), Default.ONES: np.ones(shape)}
+        value = self.home_q if default is Default.HOME_Q else fill[default]
+        return np.broadcast_to(value, (states, *shape))
+
+
+class _State:
+    """Arrays known so far, and what went wrong where."""
+
+    def __init__(self, model: Interpreter, values: dict[str, Array], states: int) -> None:
+        self.model, self.values, self.states = model, values, states
+        self.status = np.full(states, int(Status.OK))
+        for value in values.values():
+            self._blame(~finite(value), Status.INVALID)
+        self._q: Array | None = None
+
+    def _blame(self, failed: Flags, status: Status) -> None:
+        """The first cause that is met stays."""
+        self.status[failed & (self.status == Status.OK)] = status
+
+    def do(self, step: Run | Apply | Search) -> None:
+        """One step."""
+        if isinstance(step, Run):
+            self._run(step)
+        elif isinstance(step, Apply):
+            self._apply(step)
+        else:
+            self.values[step.target.name] = self._search(step)
+
+    def _run(self, step: Run) -> None:
+        function = self.model.program.functions[step.function]
+        vectors = {v: self.values[v] for v in function.inputs if v != "q"}
+        if "q" in function.inputs:
+            vectors["q"] = self._closed()
+        found = evaluate(self.model.program, step.function, self.model.prepared, vectors)
+        for target, array in zip(step.targets, function.arrays, strict=True):
+            self.values[target.name] = found.outputs[array]
+        for status in Status:
+            if status is not Status.OK:
+                self._blame(found.status == status, status)
+
+    def _closed(self) -> Array:
+        """Displacements by iteration from q0, once."""
+        if self._q is None:
+            q, converged = close_loops(
+                self.model.program, self.model.prepared, self.values["X"], self.values["q0"]
+            )
+            self._blame(~converged, Status.NOT_CONVERGED)
+            self._q = q
+        return self._q
+
+    def _apply(self, step: Apply) -> None:
+        operation = OPERATIONS[step.operation]
+        operands = [self.values[o.name] for o in step.operands]
+        known = np.ones(self.states, dtype=bool)
+        for operand in operands:
+            known &= finite(operand)
+        results = operation(operands, step.numbers)
+        for target, result in zip(step.targets, results, strict=True):
+            self.values[target.name] = result
+            lost = ~finite(result)
+            self._blame(known & lost, operation.status)
+
+    def finished(self, outputs: Sequence[Array]) -> NDArray[np.int_]:
+        """Status of every state: what is not finite is at least INVALID."""
+        for array in outputs:
+            self._blame(~finite(array), Status.INVALID)
+        return self.status
+
+    # ---- searches ----------------------------------------------------------------------------
+
+    def _search(self, step: Search) -> Array:
+        """Gauss-Newton, state by state."""
+        found = np.array(self.values[step.start.name])
+        for k in range(self.states):
+            row = {n: v[k : k + 1] for n, v in self.values.items() if n != step.start.name}
+            found[k], status = self._search_one(step, found[k : k + 1], row)
+            if status is not Status.OK:
+                self._blame(np.arange(self.states) == k, status)
+        return found
+
+    def _search_one(
+        self, step: Search, X: Array, given: Mapping[str, Array]
+    ) -> tuple[Array, Status]:
+        call, layout = self.model.call, self.model.layout
+        names = [a.name for a in self.model.functions[step.residual].inputs]
+        others = {n: v for n, v in given.items() if n in names and n != "X"}
+        slope_of = {n: v for n, v in others.items() if n == "q0"}
+        answer = call(step.residual, X=X, **others)
+        (gap,) = answer.outputs
+        for _ in range(SEARCH_STEPS):
+            size = float(np.max(np.abs(gap), initial=0.0))
+            if not np.isfinite(size):
+                return X[0] * np.nan, Status(int(answer.status[0]))
+            if size < CLOSE:
+                break
+            (slope,) = call(step.slope, X=X, **slope_of).outputs
+            if not np.isfinite(slope).all():
+                return X[0] * np.nan, Status.SINGULAR
+            change = np.linalg.lstsq(slope[0].T, gap[0], rcond=1e-10)[0]
+            for halving in range(HALVINGS if step.halving else 1):
+                trial = layout.moved(X, change[None] * 0.5**halving)
+                answer = call(step.residual, X=trial, **others)
+                (trial_gap,) = answer.outputs
+                if not step.halving or np.max(np.abs(trial_gap), initial=0.0) < size:
+                    break
+            else:
+                break
+            X, gap = trial, trial_gap
+            if not step.halving and float(np.max(np.abs(change))) < 0.1 * CLOSE:
+                break
+        lost = not float(np.max(np.abs(gap), initial=0.0)) < FOUND
+        return (X[0] * np.nan, Status.NOT_CONVERGED) if lost else (X[0], Status.OK)

@@ -1,0 +1,352 @@
+"""The operations of public functions: one definition each, on arrays over states.
+
+Operands are arrays (states, *shape).  An operation that can fail gives NaN where it fails and says
+there which status that is; every other status and all that follows is settled in one place, where
+a public function ends: what is not finite is NaN as a whole.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pne_sym.program import linear
+from pne_sym.program.evaluate import Status
+
+Array = NDArray[np.float64]
+Shape = tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Operation:
+    """An operation on arrays.
+
+    Attributes:
+        name: in steps.
+        compute: results, in order, of operands over states; its docstring says what it means.
+        status: of a state in which a result is not finite although all operands are.
+    """
+
+    name: str
+    compute: Callable[..., tuple[Array, ...]]
+    status: Status = Status.INVALID
+
+    def __call__(self, operands: Sequence[Array], numbers: tuple[int, ...]) -> tuple[Array, ...]:
+        """Results at operands over states."""
+        takes = "numbers" in inspect.signature(self.compute).parameters
+        with np.errstate(all="ignore"):
+            return self.compute(*operands, **({"numbers": numbers} if takes else {}))
+
+    def shapes(self, operands: Sequence[Shape], numbers: tuple[int, ...]) -> list[Shape]:
+        """Shapes of what it gives for operands of these shapes."""
+        found = self([np.ones((1, *shape)) for shape in operands], numbers)
+        return [array.shape[1:] for array in found]
+
+
+OPERATIONS: dict[str, Operation] = {}
+_Compute = Callable[..., tuple[Array, ...]]
+
+
+def _operation(status: Status = Status.INVALID) -> Callable[[_Compute], _Compute]:
+    """Enter a function into the table under its own name."""
+
+    def enter(compute: _Compute) -> _Compute:
+        OPERATIONS[compute.__name__] = Operation(compute.__name__, compute, status)
+        return compute
+
+    return enter
+
+
+# ---- sums, products, parts ---------------------------------------------------------------------
+
+
+@_operation()
+def add(a: Array, b: Array) -> tuple[Array, ...]:
+    """a + b."""
+    return (a + b,)
+
+
+@_operation()
+def subtract(a: Array, b: Array) -> tuple[Array, ...]:
+    """a - b."""
+    return (a - b,)
+
+
+@_operation()
+def same(a: Array) -> tuple[Array, ...]:
+    """a itself."""
+    return (np.array(a),)
+
+
+@_operation(Status.SINGULAR)
+def impossible(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """n values that no forces give: SINGULAR."""
+    return (np.full((len(a), *numbers), np.nan),)
+
+
+@_operation()
+def entry(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """Entry n of a."""
+    return (a[:, numbers[0]],)
+
+
+@_operation()
+def negative(a: Array) -> tuple[Array, ...]:
+    """-a."""
+    return (-a,)
+
+
+@_operation()
+def times(a: Array, b: Array) -> tuple[Array, ...]:
+    """a (m x n) times the vector b."""
+    return ((a @ b[..., None])[..., 0],)
+
+
+@_operation()
+def product(a: Array, b: Array) -> tuple[Array, ...]:
+    """The matrix product a b."""
+    return (a @ b,)
+
+
+@_operation()
+def transposed(a: Array) -> tuple[Array, ...]:
+    """The transpose of a."""
+    return (np.swapaxes(a, -1, -2),)
+
+
+@_operation()
+def half_form(a: Array, b: Array) -> tuple[Array, ...]:
+    """Half of a^T b a."""
+    return (0.5 * np.einsum("si,sij,sj->s", a, b, a),)
+
+
+@_operation()
+def scale_columns(a: Array, b: Array) -> tuple[Array, ...]:
+    """Columns of a times the entries of b."""
+    return (a * b[:, None, :],)
+
+
+@_operation()
+def multiply(a: Array, b: Array) -> tuple[Array, ...]:
+    """Entry by entry a b."""
+    return (a * b,)
+
+
+@_operation()
+def inverse_root(a: Array) -> tuple[Array, ...]:
+    """Entry by entry 1 / root of a; INVALID unless a is positive."""
+    with np.errstate(all="ignore"):
+        found: Array = 1.0 / np.sqrt(a)
+    return (np.where((a > 0.0) & (found > 0.0), found, np.nan),)
+
+
+@_operation()
+def extend(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a with as many zeros behind that there are n entries."""
+    return (np.pad(a, ((0, 0), (0, numbers[0] - a.shape[1]))),)
+
+
+@_operation()
+def take(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """The numbered rows (entries) of a."""
+    return (a[:, list(numbers)],)
+
+
+@_operation()
+def take_columns(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """The numbered columns of a."""
+    return (a[:, :, list(numbers)],)
+
+
+@_operation()
+def add_at(a: Array, b: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a with b added to the numbered entries."""
+    result = np.array(a)
+    result[:, list(numbers)] += b
+    return (result,)
+
+
+@_operation()
+def clear_at(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a with zeros at the numbered entries."""
+    result = np.array(a)
+    result[:, list(numbers)] = 0.0
+    return (result,)
+
+
+@_operation()
+def beside(a: Array, b: Array) -> tuple[Array, ...]:
+    """The columns of a, then those of b."""
+    return (np.concatenate((a, b), axis=2),)
+
+
+@_operation()
+def join(a: Array, b: Array) -> tuple[Array, ...]:
+    """The entries of a, then those of b."""
+    return (np.concatenate((a, b), axis=1),)
+
+
+@_operation()
+def split(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """The first n entries of a, and the rest."""
+    return a[:, : numbers[0]], a[:, numbers[0] :]
+
+
+@_operation()
+def add_forces(a: Array, b: Array, c: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a, and the row of forces b_k c_k added to its row n_k, for every k."""
+    result = np.array(a)
+    for k, leg in enumerate(numbers):
+        result[:, leg] += b[:, k, None] * c[:, k]
+    return (result,)
+
+
+@_operation()
+def wrap_turns(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a, the numbered entries turned into (-pi, pi]."""
+    result, places = np.array(a), list(numbers)
+    with np.errstate(all="ignore"):
+        result[:, places] = np.pi - np.remainder(np.pi - a[:, places], 2.0 * np.pi)
+    return (result,)
+
+
+# ---- linear equations ----------------------------------------------------------------------------
+
+
+@_operation(Status.SINGULAR)
+def solve(a: Array, b: Array) -> tuple[Array, ...]:
+    """x with a x = b: rows scaled, the largest pivot; SINGULAR where a pivot is below PIVOT."""
+    return (linear.solve(a, b),)
+
+
+@_operation()
+def saddle(a: Array, b: Array) -> tuple[Array, ...]:
+    """The matrix [[a, -b], [b^T, 0]]."""
+    states, n, m = b.shape
+    result = np.zeros((states, n + m, n + m))
+    result[:, :n, :n], result[:, :n, n:] = a, -b
+    result[:, n:, :n] = np.swapaxes(b, -1, -2)
+    return (result,)
+
+
+@_operation(Status.SINGULAR)
+def least_norm(a: Array, b: Array) -> tuple[Array, ...]:
+    """The least x with a x = b, rows of a independent.
+
+    SINGULAR where the least singular value of a, rows scaled to one, is below PIVOT of the largest.
+    """
+    bad = ~(finite(a) & finite(b))
+    a = _blanked(a, bad)
+    size = _row_sizes(a)
+    u, s, vt = np.linalg.svd(a / size, full_matrices=False)
+    with np.errstate(all="ignore"):
+        y = (np.swapaxes(u, -1, -2) @ (b / size[..., 0])[..., None]) / s[..., None]
+        x = (np.swapaxes(vt, -1, -2) @ y)[..., 0]
+    x[bad | ~(s[:, -1] > linear.PIVOT * s[:, 0])] = np.nan
+    return (x,)
+
+
+@_operation(Status.SINGULAR)
+def resolve(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """Combinations of rows of a: n that resolve it, and the others, which vanish on it.
+
+    SINGULAR where the rank of a, rows scaled to one, is less than n.
+    """
+    rank = numbers[0]
+    bad = ~finite(a)
+    a = _blanked(a, bad)
+    size = _row_sizes(a)
+    u, s, _ = np.linalg.svd(a / size)
+    rows = np.swapaxes(u / size, -1, -2)
+    rows[bad | ~(s[:, rank - 1] > linear.PIVOT * s[:, 0])] = np.nan
+    return rows[:, :rank], rows[:, rank:]
+
+
+@_operation()
+def null_basis(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """Orthonormal columns x with a x = 0, for a of rank n."""
+    bad = ~finite(a)
+    _, _, vt = np.linalg.svd(_blanked(a, bad))
+    basis = np.array(np.swapaxes(vt[:, numbers[0] :], -1, -2))
+    basis[bad] = np.nan
+    return (basis,)
+
+
+def finite(a: Array) -> NDArray[np.bool_]:
+    """States in which every entry is finite."""
+    return np.asarray(np.isfinite(a.reshape(len(a), -1)).all(axis=1), dtype=np.bool_)
+
+
+def _blanked(a: Array, bad: NDArray[np.bool_]) -> Array:
+    """Matrices with zeros in bad states: LAPACK refuses what is not finite."""
+    return np.where(bad[:, None, None], np.float64(0.0), a)
+
+
+def _row_sizes(a: Array) -> Array:
+    size = np.max(np.abs(a), axis=-1, keepdims=True, initial=0.0)
+    return np.where(size > 0.0, size, 1.0)
+
+
+# ---- poses --------------------------------------------------------------------------------
+
+
+@_operation()
+def rotation_of_quaternion(a: Array) -> tuple[Array, ...]:
+    """The rotation matrix of the quaternion a (x, y, z, w) of any length."""
+    with np.errstate(all="ignore"):
+        largest = np.max(np.abs(a), axis=1, keepdims=True)
+        q = a / np.where((largest > 0.0) & np.isfinite(largest), largest, np.nan)
+        x, y, z, w = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
+    rows = (
+        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+    )
+    return (np.moveaxis(np.array(rows), -1, 0),)
+
+
+@_operation()
+def rotation_of_angle(a: Array) -> tuple[Array, ...]:
+    """The rotation matrix of the angle a in the plane."""
+    with np.errstate(all="ignore"):
+        c, s = np.cos(a[:, 0]), np.sin(a[:, 0])
+    return (np.moveaxis(np.array(((c, -s), (s, c))), -1, 0),)
+
+
+@_operation()
+def quaternion_of_rpy(a: Array) -> tuple[Array, ...]:
+    """The quaternion of roll, pitch, yaw about the fixed axes x, y, z."""
+    with np.errstate(all="ignore"):
+        (cx, cy, cz), (sx, sy, sz) = np.cos(0.5 * a).T, np.sin(0.5 * a).T
+    rows = (
+        sx * cy * cz - cx * sy * sz,
+        cx * sy * cz + sx * cy * sz,
+        cx * cy * sz - sx * sy * cz,
+        cx * cy * cz + sx * sy * sz,
+    )
+    return (np.array(rows).T,)
+
+
+@_operation()
+def quaternion_rate(a: Array, b: Array) -> tuple[Array, ...]:
+    """The rate of the quaternion a at the angular velocity b."""
+    with np.errstate(all="ignore"):
+        vector = 0.5 * (a[:, 3:] * b + np.cross(b, a[:, :3]))
+        scalar = -0.5 * np.sum(a[:, :3] * b, axis=1, keepdims=True)
+    return (np.concatenate((vector, scalar), axis=1),)
+
+
+@_operation()
+def turn_quaternion(a: Array, b: Array) -> tuple[Array, ...]:
+    """Exp([b]) turned onto the quaternion a: by the rotation vector b."""
+    with np.errstate(all="ignore"):
+        angle = np.linalg.norm(b, axis=1, keepdims=True)
+        v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
+        q = a / np.linalg.norm(a, axis=1, keepdims=True)
+        vector = c * q[:, :3] + q[:, 3:] * v + np.cross(v, q[:, :3])
+        scalar = c * q[:, 3:] - np.sum(v * q[:, :3], axis=1, keepdims=True)
+    return (np.concatenate((vector, scalar), axis=1),)

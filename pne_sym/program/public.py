@@ -1,0 +1,188 @@
+"""What users call, as data: public functions as short lists of steps over the program's functions.
+
+A step runs a function of the program, or applies an operation (a product, a solution of linear
+equations ...) to arrays of one state.  Every operation has one definition, in
+`pne_sym.program.operations`; a back end prints steps and provides the operations.
+"""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+
+
+class Default(enum.StrEnum):
+    """What stands for an optional argument that is not given."""
+
+    ZEROS = "zeros"
+    ONES = "ones"
+    HOME_Q = "displacements at home"
+
+
+@dataclass(frozen=True)
+class Value:
+    """An array of one state, known by name.
+
+    Attributes:
+        name: of the array.
+        shape: of one state; () for a number.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+
+    @property
+    def size(self) -> int:
+        """Number of entries."""
+        product = 1
+        for n in self.shape:
+            product *= n
+        return product
+
+
+@dataclass(frozen=True)
+class Argument:
+    """An input or output of a public function.
+
+    Attributes:
+        value: name and shape.
+        dimensions: names of the sizes in the shape, such as ("NV", "NU"), or digits.
+        meaning: in words, with the unit where there is one.
+        default: what stands for it where it is not given; None where it is required.
+    """
+
+    value: Value
+    dimensions: tuple[str, ...]
+    meaning: str
+    default: Default | None = None
+
+    @property
+    def name(self) -> str:
+        """The argument's name."""
+        return self.value.name
+
+
+@dataclass(frozen=True)
+class Run:
+    """A function of the program at input vectors; the vector q is closed from q0 before.
+
+    Attributes:
+        function: its name.
+        targets: its arrays, in its order.
+    """
+
+    function: str
+    targets: tuple[Value, ...]
+
+
+@dataclass(frozen=True)
+class Apply:
+    """Operation of arrays.
+
+    Attributes:
+        operation: its name in `pne_sym.program.operations`.
+        operands: arrays of the state.
+        numbers: what is fixed at generation: rows, ranks, sizes.
+        targets: what it gives.
+    """
+
+    operation: str
+    operands: tuple[Value, ...]
+    targets: tuple[Value, ...]
+    numbers: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True)
+class Search:
+    """Gauss-Newton with step halving: the pose at which a residual vanishes.
+
+    Attributes:
+        residual, slope: internal public functions of the pose: gap (n,) and its derivative by a
+            small displacement of the pose, (NV, n).
+        start: first guess.
+        target: the pose.
+        halving: steps are halved until the residual is smaller; otherwise they are taken as they
+            are.
+    """
+
+    residual: str
+    slope: str
+    start: Value
+    target: Value
+    halving: bool
+
+
+Step = Run | Apply | Search
+
+
+@dataclass(frozen=True)
+class PublicFunction:
+    """A function that users call, or a part of one that is not exported.
+
+    Attributes:
+        name: of the function.
+        meaning: a sentence for docstrings and headers.
+        inputs, outputs: arguments in order; optional inputs last.
+        steps: in order.
+        group: what it is about: "dynamics", "kinematics", "constraints", "pose" ...
+        needs_model: it depends on the parameters.
+        is_exported: users call it.
+        counted: function of the program whose operation counts are stated, or "".
+        also: what these counts leave out.
+    """
+
+    name: str
+    meaning: str
+    inputs: tuple[Argument, ...]
+    outputs: tuple[Argument, ...]
+    steps: tuple[Step, ...]
+    group: str
+    needs_model: bool = True
+    is_exported: bool = True
+    counted: str = ""
+    also: str = ""
+
+    @property
+    def required(self) -> tuple[Argument, ...]:
+        """Inputs without a default."""
+        return tuple(a for a in self.inputs if a.default is None)
+
+    @property
+    def optional(self) -> tuple[Argument, ...]:
+        """Inputs with a default."""
+        return tuple(a for a in self.inputs if a.default is not None)
+
+    @property
+    def functions(self) -> tuple[str, ...]:
+        """Functions of the program that it runs."""
+        return tuple(dict.fromkeys(s.function for s in self.steps if isinstance(s, Run)))
+
+
+class StepError(Exception):
+    """A public function that must not be printed."""
+
+
+def verify_steps(function: PublicFunction) -> None:
+    """Every array is made once and before it is used; outputs are made.
+
+    Raises:
+        StepError: what is wrong, in which function.
+    """
+    known: dict[str, tuple[int, ...]] = {a.name: a.value.shape for a in function.inputs}
+
+    def use(value: Value) -> None:
+        if known.get(value.name) != value.shape:
+            raise StepError(f"{function.name}: {value.name} {value.shape} is not known")
+
+    for step in function.steps:
+        if isinstance(step, Apply):
+            for operand in step.operands:
+                use(operand)
+        if isinstance(step, Search):
+            use(step.start)
+        for target in step.targets if not isinstance(step, Search) else (step.target,):
+            if target.name in known:
+                raise StepError(f"{function.name}: {target.name} is made twice")
+            known[target.name] = target.shape
+    for output in function.outputs:
+        use(output.value)
