@@ -30,7 +30,7 @@ _DPI = 200
 _DRAWN = re.compile(r' d="[^"]*"|translate\([^)]*\)')
 _LONG = re.compile(r"-?\d+\.\d+")
 _METADATA: dict[str, dict[str, Any]] = {
-    ".svg": {"Date": None, "Creator": None},
+    ".svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     ".png": {"Software": None},
     ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
@@ -74,9 +74,7 @@ def rendered(picture: Picture, suffix: str) -> bytes:
     with mpl.rc_context({"svg.hashsalt": "pne_sym", "svg.fonttype": "path"}):
         page.savefig(buffer, format=suffix[1:], dpi=_DPI, metadata=_METADATA[suffix])
     content = buffer.getvalue()
-    if suffix != ".svg":
-        return content
-    return _compact(content.decode()).encode()
+    return _rounded(content.decode()).encode() if suffix == ".svg" else content
 
 
 def _shorter(number: re.Match[str]) -> str:
@@ -85,18 +83,9 @@ def _shorter(number: re.Match[str]) -> str:
     return "0" if text == "-0" else text
 
 
-def _compact(svg: str) -> str:
-    """The same picture in fewer bytes, and without digits that differ between machines."""
-    svg = _DRAWN.sub(lambda drawn: _LONG.sub(_shorter, drawn[0]), svg)
-    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
-    svg = re.sub(r'<g id="patch_\d+">\s*(<path [^>]*>)\s*</g>', r"\1", svg)
-    svg = re.sub(r"(?<=\d)\s*\nL (?=[-\d])", " ", svg)  # after M, more points are lines
-    svg = re.sub(r'\s*\nz\s*"', 'z"', svg)
-    svg = re.sub(r"(?<=[;:]) (?=[a-z#\d])", "", svg)
-    svg = svg.replace("; ", ";").replace(";stroke-linecap:round", "")
-    svg = svg.replace(f';stroke-width:{LINE}"', '"')
-    svg = svg.replace("stroke-linecap:butt", f"stroke-linecap:round;stroke-width:{LINE}")
-    return "\n".join(line.strip() for line in svg.splitlines() if line.strip()) + "\n"
+def _rounded(svg: str) -> str:
+    """The same picture without digits that differ between machines; commands stay as they are."""
+    return _DRAWN.sub(lambda drawn: _LONG.sub(_shorter, drawn[0]), svg)
 
 
 def figure(picture: Picture) -> Figure:

@@ -26,7 +26,7 @@ from pne_sym.model.reader import from_mapping
 from pne_sym.writer import OutputError
 from tests.model import examples
 
-LARGEST = 65_000
+LARGEST = 95_000
 """Bytes; some more than the pictures in docs have, as versions of matplotlib differ."""
 
 
