@@ -45,16 +45,17 @@ def spatial_picture(scene: Scene, view: View) -> Picture:
 
 
 def _numbers(scene: Scene, view: View, plate: Plate, sizes: Proportions) -> list[Label]:
-    """The legs' numbers, off the rim of the base plate."""
+    """The legs' numbers, off the rim of the base plate, or beside the posts where there is none."""
     bases = np.array([leg.base for leg in scene.legs])
-    feet = bases
+    feet, rim_at = bases, 1.5 * sizes.joint
     if np.isfinite(plate.top):
+        rim_at = 4.0 * sizes.joint
         feet = bases - np.outer(bases @ plate.normal - plate.top, plate.normal)
     away = feet - feet.mean(axis=0)
     labels = []
     for number, (foot, direction) in enumerate(zip(feet, away, strict=True), start=1):
         unit = direction / (float(np.linalg.norm(direction)) or 1.0)
-        rim = view.flat(foot + 4.0 * sizes.joint * unit)
+        rim = view.flat(foot + rim_at * unit)
         off = view.flat(unit)
         x, y = 10.0 * off / (float(np.linalg.norm(off)) or 1.0)
         if y > 2.0:  # behind the leg: beside its foot

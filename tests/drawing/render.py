@@ -43,7 +43,9 @@ def pixels(png: bytes) -> Array:
 
 def largest_difference(one: Array, other: Array) -> float:
     """The largest difference of two pictures' means over squares of some pixels."""
-    rows, columns = (min(a, b) // BLOCK for a, b in zip(one.shape[:2], other.shape[:2], strict=True))
+    rows, columns = (
+        min(a, b) // BLOCK for a, b in zip(one.shape[:2], other.shape[:2], strict=True)
+    )
     means = [
         each[: rows * BLOCK, : columns * BLOCK]
         .reshape(rows, BLOCK, columns, BLOCK, 3)
