@@ -12,7 +12,11 @@ GENERATE = "NAME_OR_SPEC..."
 """Name of the command that is meant where a model stands; no model can have it."""
 
 COMMANDS = ("list", "all", "check", "explain", "diff", "new", "draw")
-OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage", "--tolerance", "--legs", "--space")
+OPTIONS_WITH_VALUE = (
+    *("--out", "-o", "--jobs", "-j"),
+    *("--stage", "--tolerance", "--legs", "--space"),
+    *("--pose", "--q", "--path", "--fps", "--azimuth", "--elevation"),
+)
 _OF_THE_PROGRAM = ("--help", "-h", "--version")
 
 

@@ -1,4 +1,4 @@
-"""Pictures on paper: the one module that uses matplotlib."""
+"""Pictures on paper, by matplotlib."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ WIDTH, HEIGHT = 432.0, 324.0
 """Of the page, in typographic points (1/72 inch)."""
 _MARGIN, _LEGEND, _EDGE = 22.0, 16.0, 2.0
 _FONT, _SMALL = "DejaVu Sans", 8.0
-_MISSING = "drawing needs matplotlib: pip install 'pne-sym[draw]'"
+MISSING = "drawing needs matplotlib: pip install 'pne-sym[draw]'"
 _DPI = 200
 _DRAWN = re.compile(r' d="[^"]*"|translate\([^)]*\)')
 _LONG = re.compile(r"-?\d+\.\d+")
@@ -58,7 +58,15 @@ def save(picture: Picture, path: Path) -> None:
         OutputError: the file cannot be written.
     """
     check_path(path)
-    content = rendered(picture, path.suffix)
+    write(path, rendered(picture, path.suffix))
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write the bytes of a picture file.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
     try:
         path.write_bytes(content)
     except OSError as error:
@@ -110,8 +118,12 @@ class Layout:
     radii: tuple[float, ...]
 
 
-def layout(pictures: Sequence[Picture]) -> Layout:
+def layout(pictures: Sequence[Picture], samples: Sequence[Picture] = ()) -> Layout:
     """A place for pictures that follow each other, with the labels of the first.
+
+    Args:
+        pictures: all of them; they have room on the page.
+        samples: those that labels keep clear of; default all.
 
     Raises:
         InputError: matplotlib is not installed.
@@ -132,7 +144,7 @@ def layout(pictures: Sequence[Picture]) -> Layout:
     page = Page(
         np.full(2, _EDGE), np.array([width, HEIGHT]) - _EDGE, tuple(_legend_boxes(first.legend))
     )
-    shapes = tuple(shape for picture in pictures for shape in picture.shapes)
+    shapes = tuple(shape for picture in samples or pictures for shape in picture.shapes)
     places = label_places(replace(first, shapes=shapes), scale, shift, extents, page)
     return Layout(scale, shift, width, tuple(places), tuple(float(e[0]) for e in extents))
 
@@ -147,7 +159,7 @@ def text_size(text: str, size: float) -> tuple[float, float]:
         from matplotlib.font_manager import FontProperties
         from matplotlib.textpath import text_to_path
     except ImportError as error:
-        raise InputError(_MISSING) from error
+        raise InputError(MISSING) from error
     font = FontProperties(family=_FONT, size=size)
     width, height, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
     return float(width), float(height)
@@ -174,7 +186,7 @@ def blank(plan: Layout) -> Figure:
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise InputError(_MISSING) from error
+        raise InputError(MISSING) from error
     return Figure(figsize=(plan.width / 72.0, HEIGHT / 72.0), facecolor="white")
 
 
