@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from pne_sym.generation import InputError
 from pne_sym.mechanics.mobility import mobility
-from pne_sym.model.loops import COORDINATES, Loops, legs_closed
+from pne_sym.model.kinematics import TASK_SPACES
+from pne_sym.model.loops import Loops, legs_closed
 from pne_sym.model.manipulator import Manipulator, Space, Vector3
 
 Array = NDArray[np.float64]
@@ -53,7 +54,7 @@ def pose_of(manipulator: Manipulator, numbers: Sequence[float]) -> list[float]:
     Raises:
         InputError: not as many numbers as either form has, or one is not finite.
     """
-    names = COORDINATES[manipulator.space]
+    names = TASK_SPACES[manipulator.space].pose_names
     forms = [names]
     if _QUATERNION[0] in names:
         forms.insert(0, (*names[:-4], *_ANGLES))
@@ -151,7 +152,7 @@ def _coordinates(manipulator: Manipulator, X: Sequence[float]) -> Array:
 
 
 def _quaternion_start(space: Space) -> int | None:
-    names = COORDINATES[space]
+    names = TASK_SPACES[space].pose_names
     return names.index(_QUATERNION[0]) if _QUATERNION[0] in names else None
 
 

@@ -11,7 +11,7 @@ import pne_sym
 from pne_sym import manipulators
 from pne_sym.drawing.poses import CLOSED, closed, pose_of
 from pne_sym.generation import InputError
-from pne_sym.model.closure import pose_at
+from pne_sym.model.kinematics import pose_at
 from pne_sym.model.loops import Loops
 from pne_sym.model.rotation import rotation_from_rpy
 
