@@ -27,7 +27,11 @@ def arrange(arguments: Sequence[str]) -> list[str]:
     ['NAME_OR_SPEC...', '--out', 'generated', 'stewart']
     >>> arrange(["--quiet", "check", "stewart"])
     ['check', '--quiet', 'stewart']
+    >>> arrange(["help", "draw"])
+    ['draw', '--help']
     """
+    if arguments and arguments[0] == "help":
+        return [*arguments[1:2], "--help"]
     if not arguments or arguments[0] in _OF_THE_PROGRAM:
         return list(arguments)
     position = _first_word(arguments)

@@ -126,6 +126,11 @@ def test_progress_shows_on_a_terminal_and_leaves_the_result(tmp_path: Path) -> N
     assert f"wrote {tmp_path}/stewart" in shown
 
 
+def test_help_is_a_word_too() -> None:
+    assert pne_gen("help").stdout == pne_gen("--help").stdout
+    assert pne_gen("help", "draw").stdout == pne_gen("draw", "--help").stdout
+
+
 def test_list_has_tabs_between_when_piped() -> None:
     done = pne_gen("list")
     assert done.returncode == 0
