@@ -48,12 +48,20 @@ def motion(t: Array) -> tuple[Array, Array, Array]:
     return X, rate, acceleration
 
 
+SIZE = """\
+#include "stewart.h"
+size_t size_of_model(void);
+size_t size_of_model(void) { return sizeof(stewart_model); }
+"""
+
+
 def compiled(folder: str) -> ctypes.CDLL | None:
-    """The C module as a shared library, or None without a compiler."""
+    """The C module and the size of its model as a shared library, or None without a compiler."""
     compiler = shutil.which("gcc") or shutil.which("cc")
     if compiler is None:
         return None
-    library = Path(folder) / "stewart.so"
+    library, size = Path(folder) / "stewart.so", Path(folder) / "size.c"
+    size.write_text(SIZE, encoding="utf-8")
     subprocess.run(
         [
             compiler,
@@ -62,21 +70,25 @@ def compiled(folder: str) -> ctypes.CDLL | None:
             "-fno-math-errno",
             "-shared",
             "-fPIC",
+            f"-I{FOLDER}",
             str(FOLDER / "stewart.c"),
+            str(size),
             "-o",
             str(library),
             "-lm",
         ],
         check=True,
     )
-    return ctypes.CDLL(str(library))
+    found = ctypes.CDLL(str(library))
+    found.size_of_model.restype = ctypes.c_size_t
+    return found
 
 
 def forces_from_c(library: ctypes.CDLL, X: Array, V: Array, A: Array) -> Array:
     """Actuator forces of every state from the compiled module."""
     pointer = ctypes.POINTER(ctypes.c_double)
     tau = np.empty((len(X), stewart.NU))
-    model = ctypes.create_string_buffer(1 << 20)  # larger than any stewart_model
+    model = ctypes.create_string_buffer(library.size_of_model())
     defaults = ctypes.byref(ctypes.c_char.in_dll(library, "stewart_default_params"))
     if library.stewart_prepare(defaults, model) != 0:
         raise RuntimeError("stewart_prepare refused the default parameters")

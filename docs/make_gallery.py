@@ -38,10 +38,13 @@ figure on it is the program's own. For one of your own:
 
 ```sh
 pne-gen draw my_robot.toml --out my_robot.svg    # .svg, .png or .pdf; pip install 'pne-sym[draw]'
+pne-gen draw my_robot.toml --pose 0.05,0,0.8,0,0,0.2    # x, y, z, roll, pitch, yaw; or X itself
+pne-gen draw my_robot.toml --path poses.csv --out motion.gif    # a pose in each line; or .mp4
 ```
 
 ```python
 pne_sym.draw("stewart", "stewart.png", azimuth=-40, elevation=25)
+pne_sym.animate("stewart", "motion.gif", poses)  # X of each frame
 ```
 
 Letters: R revolute, P prismatic, H helical, U universal, S spherical, from the base to the

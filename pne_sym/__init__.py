@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING, Any
 os.environ.setdefault("SYMPY_CACHE_SIZE", "200000")
 
 if TYPE_CHECKING:
-    from pne_sym.drawing import draw
+    from pne_sym.drawing import animate, draw
     from pne_sym.generation import find as load
     from pne_sym.generation import generate
     from pne_sym.lowering.program import lower
@@ -54,6 +54,7 @@ _HOMES = {
     **{name: ("pne_sym.model.manipulator", name) for name in _MODEL},
     "SpecError": ("pne_sym.model.errors", "SpecError"),
     "SpecWarning": ("pne_sym.model.errors", "SpecWarning"),
+    "animate": ("pne_sym.drawing", "animate"),
     "compile_model": ("pne_sym.pipeline", "compile_model"),
     "derive": ("pne_sym.mechanics.derive", "derive"),
     "draw": ("pne_sym.drawing", "draw"),
@@ -74,6 +75,7 @@ __all__ = [
     "Space",
     "SpecError",
     "SpecWarning",
+    "animate",
     "compile_model",
     "derive",
     "draw",

@@ -13,8 +13,8 @@ import typer
 import typer.core
 
 from pne_sym import comparison, writer
-from pne_sym.cli import drawing, review, starter
-from pne_sym.cli.arguments import GENERATE
+from pne_sym.cli import drawing, listing, review, starter
+from pne_sym.cli.arguments import COMMANDS, GENERATE
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
 from pne_sym.cli.options import Debug
@@ -89,7 +89,7 @@ Examples:
   pne-gen all --out generated/ --jobs 4    the whole catalogue
   pne-gen check stewart --out generated/   is what stands there up to date?
   pne-gen list                             what the catalogue has
-  pne-gen draw stewart --out stewart.svg   a picture of it at home
+  pne-gen draw stewart --out stewart.svg   a picture of it; --pose, --path
   pne-gen explain stewart ups-K5           an equation: law, uses, users, code
   pne-gen diff HEAD:my_robot.toml my_robot.toml   what a change means
 
@@ -137,6 +137,7 @@ def generate(
     """
     with told(debug=debug):
         writer.check_output(out)
+        _check_command(sources[0])
         _generate(_find(sources), out, jobs=1, report=Report(quiet=quiet))
 
 
@@ -157,15 +158,15 @@ def generate_all(
 def list_models(debug: Debug = False) -> None:
     """List the catalogue.
 
-    Name and title of each model; with a tab between them when piped.
+    Degrees of freedom at home, actuated joints by kind (P prismatic, R revolute, H
+    helical), and the legs: count, joints from the base, platform joint. When piped, a line
+    is name, title, freedoms, actuators, legs, with tabs between.
     """
     with told(debug=debug):
-        rows = [(model.name, model.title) for model in _find(_catalogue())]
-        width = max((len(name) for name, _ in rows), default=0)
-        gap = "  " if sys.stdout.isatty() else "\t"
-        for name, title in rows:
-            start = name.ljust(width) if sys.stdout.isatty() else name
-            Report().line(f"{start}{gap}{title}")
+        rows = [listing.row(model) for model in _find(_catalogue())]
+        lines = listing.aligned(rows) if sys.stdout.isatty() else listing.tabbed(rows)
+        for line in lines:
+            Report().line(line)
 
 
 @app.command("check")
@@ -207,6 +208,20 @@ def _catalogue() -> tuple[str, ...]:
     return manipulators.names()
 
 
+def _check_command(word: str) -> None:
+    """Refuse what is no model and looks like a command that was mistyped."""
+    from pne_sym.generation import InputError
+    from pne_sym.model.entry import near
+    from pne_sym.model.errors import show
+
+    if word in _catalogue() or "." in word or "/" in word:
+        return
+    if command := near(word, COMMANDS, 1, likeness=0.7):
+        raise InputError(
+            f"no command or manipulator {show(word)}; did you mean pne-gen {command[0]}?"
+        )
+
+
 def _wanted(sources: Sequence[str], out: Path) -> Sequence[str]:
     """What `check` compares: what is named, or what stands there."""
     from pne_sym.generation import InputError
@@ -245,8 +260,10 @@ def _generate(models: Sequence[Manipulator], out: Path, *, jobs: int, report: Re
     from pne_sym.generation import compile_many, remarks
 
     with report.progress(len(models)) as step:
-        step.working_on(_names(models))
-        for compiled in compile_many(models, jobs):
+        compiling = compile_many(models, jobs)
+        for model in models:
+            step.working_on(model.name)
+            compiled = next(compiling)
             said = remarks(compiled)
             folder = writer.write_model(out, compiled.manipulator.name, compiled.files)
             size = sum(len(text.encode()) for text in compiled.files.values())
@@ -264,9 +281,10 @@ def _check(
 
     differing = []
     with report.progress(len(models)) as step:
-        step.working_on(_names(models))
-        for source, compiled in zip(sources, compile_many(models, jobs), strict=True):
-            name = compiled.manipulator.name
+        compiling = compile_many(models, jobs)
+        for source, model in zip(sources, models, strict=True):
+            step.working_on(model.name)
+            compiled, name = next(compiling), model.name
             differences = comparison.check_model(out, name, compiled.files)
             for difference in differences:
                 report.difference(f"{difference.kind}: {out / difference.path}")
@@ -280,8 +298,3 @@ def _check(
     if differing:
         report.difference(f"to mend it: {shlex.join(['pne-gen', *differing, '--out', str(out)])}")
     return not differing
-
-
-def _names(models: Sequence[Manipulator]) -> str:
-    names = [model.name for model in models]
-    return names[0] if len(names) == 1 else f"{len(names)} models"

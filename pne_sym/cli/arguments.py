@@ -12,7 +12,11 @@ GENERATE = "NAME_OR_SPEC..."
 """Name of the command that is meant where a model stands; no model can have it."""
 
 COMMANDS = ("list", "all", "check", "explain", "diff", "new", "draw")
-OPTIONS_WITH_VALUE = ("--out", "-o", "--jobs", "-j", "--stage", "--tolerance", "--legs", "--space")
+OPTIONS_WITH_VALUE = (
+    *("--out", "-o", "--jobs", "-j"),
+    *("--stage", "--tolerance", "--legs", "--space"),
+    *("--pose", "--q", "--path", "--fps", "--azimuth", "--elevation"),
+)
 _OF_THE_PROGRAM = ("--help", "-h", "--version")
 
 
@@ -23,7 +27,11 @@ def arrange(arguments: Sequence[str]) -> list[str]:
     ['NAME_OR_SPEC...', '--out', 'generated', 'stewart']
     >>> arrange(["--quiet", "check", "stewart"])
     ['check', '--quiet', 'stewart']
+    >>> arrange(["help", "draw"])
+    ['draw', '--help']
     """
+    if arguments and arguments[0] == "help":
+        return [*arguments[1:2], "--help"]
     if not arguments or arguments[0] in _OF_THE_PROGRAM:
         return list(arguments)
     position = _first_word(arguments)

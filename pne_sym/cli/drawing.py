@@ -1,61 +1,151 @@
-"""The command `pne-gen draw`: a picture of a manipulator at home."""
+"""The command `pne-gen draw`: a picture of a manipulator at a pose, or an animation of a path."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import told
+from pne_sym.cli.numbers import numbers, table
 from pne_sym.cli.options import Debug, Source
 
+if TYPE_CHECKING:
+    from pne_sym.model.manipulator import Manipulator
 
-def draw(
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "--out",
+        "-o",
+        metavar="FILE",
+        show_default=False,
+        help="The picture: .svg, .png or .pdf; with --path .gif, or .mp4 where ffmpeg is "
+        "installed. Default: NAME.svg, NAME.gif.",
+    ),
+]
+Pose = Annotated[
+    str | None,
+    typer.Option(
+        "--pose",
+        metavar="NUMBERS",
+        show_default=False,
+        help="The platform's pose, numbers with commas between (m, rad): x,y,z,roll,pitch,yaw "
+        "(fixed axes) or X itself, x,y,z,qx,qy,qz,qw; in the plane x,y,phi or x,y; without "
+        "rotation x,y,z; about a centre roll,pitch,yaw or the quaternion. Then the extra "
+        "coordinates, if there are any. Default: home.",
+    ),
+]
+Displacements = Annotated[
+    str | None,
+    typer.Option(
+        "--q",
+        metavar="NUMBERS",
+        show_default=False,
+        help="Displacements of all joints, legs as in the spec and joints from the base, from "
+        "which the legs are closed at the pose. Default: found along the straight way from home.",
+    ),
+]
+Poses = Annotated[
+    Path | None,
+    typer.Option(
+        "--path",
+        metavar="FILE.csv",
+        show_default=False,
+        help="Animate: a frame for each line, which holds the numbers of a pose as for --pose. "
+        "A first line of names and lines that begin with # are left out.",
+    ),
+]
+Fps = Annotated[
+    int, typer.Option("--fps", metavar="N", min=1, max=100, help="Frames per second, with --path.")
+]
+Azimuth = Annotated[
+    float | None,
+    typer.Option(
+        "--azimuth",
+        metavar="DEGREES",
+        show_default=False,
+        help="Where to look from, counted from x towards y. Default: where the legs "
+        "hide each other least. Not in the plane.",
+    ),
+]
+Elevation = Annotated[
+    float | None,
+    typer.Option(
+        "--elevation",
+        metavar="DEGREES",
+        show_default=False,
+        help="How far above the horizon to look from. Default: 20.",
+    ),
+]
+
+
+def draw(  # noqa: PLR0913, PLR0917 - an option each
     source: Source,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            "--out",
-            "-o",
-            metavar="FILE",
-            show_default=False,
-            help="The picture: .svg, .png or .pdf. Default: NAME.svg.",
-        ),
-    ] = None,
-    azimuth: Annotated[
-        float | None,
-        typer.Option(
-            "--azimuth",
-            metavar="DEGREES",
-            show_default=False,
-            help="Where to look from, counted from x towards y. Default: where the legs "
-            "hide each other least. Not in the plane.",
-        ),
-    ] = None,
-    elevation: Annotated[
-        float | None,
-        typer.Option(
-            "--elevation",
-            metavar="DEGREES",
-            show_default=False,
-            help="How far above the horizon to look from. Default: 20.",
-        ),
-    ] = None,
+    out: Out = None,
+    pose: Pose = None,
+    q: Displacements = None,
+    path: Poses = None,
+    fps: Fps = 25,
+    azimuth: Azimuth = None,
+    elevation: Elevation = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Tell only warnings.")] = False,
     debug: Debug = False,
 ) -> None:
-    """Draw a manipulator at home.
+    """Draw a manipulator: a picture at a pose, or an animation of a path.
 
     Base, joints by their kinds, links, platform and frames, from its own data; driven
     joints stand out. Needs matplotlib: pip install 'pne-sym[draw]'.
     """
     with told(debug=debug):
         from pne_sym import drawing
-        from pne_sym.generation import find
+        from pne_sym.generation import InputError, find
 
-        manipulator = find(source)
-        path = Path(f"{manipulator.name}.svg") if out is None else out
-        drawing.draw(manipulator, path, azimuth=azimuth, elevation=elevation)
-        Report(quiet=quiet).line(f"wrote {path}: {path.stat().st_size / 1000:.0f} kB")
+        if pose is not None and path is not None:
+            raise InputError("--pose and --path exclude each other")
+        manipulator, report = find(source), Report(quiet=quiet)
+        guess = None if q is None else _numbers("--q", q)
+        target = out or Path(f"{manipulator.name}.{'svg' if path is None else 'gif'}")
+        look = {"azimuth": azimuth, "elevation": elevation}
+        if path is None:
+            X = None if pose is None else _numbers("--pose", pose, manipulator)
+            drawing.draw(manipulator, target, X, guess, **look)
+        else:
+            drawing.check_film(target, fps)
+            poses = _poses(manipulator, path)
+            try:
+                frames = drawing.pictures(manipulator, poses, guess, **look)
+            except InputError as error:
+                raise InputError(f"{path}: {error}") from error
+            with report.progress(len(frames)) as step:
+                step.working_on(f"{manipulator.name}: frames")
+                drawing.save_film(frames, target, fps, step.done)
+        report.line(f"wrote {target}: {target.stat().st_size / 1000:.0f} kB")
+
+
+def _numbers(option: str, text: str, pose_of: Manipulator | None = None) -> list[float]:
+    """The numbers of an option; of a pose, X."""
+    from pne_sym import drawing
+    from pne_sym.generation import InputError
+
+    try:
+        found = numbers(text)
+        return found if pose_of is None else drawing.pose_of(pose_of, found)
+    except ValueError as error:  # an InputError is one too
+        raise InputError(f"{option}: {error}") from error
+
+
+def _poses(manipulator: Manipulator, path: Path) -> list[list[float]]:
+    """X of every line of a file."""
+    from pne_sym.drawing import pose_of
+    from pne_sym.generation import InputError
+
+    poses = []
+    for line, values in table(path):
+        try:
+            poses.append(pose_of(manipulator, values))
+        except InputError as error:
+            raise InputError(f"{path}: line {line}: {error}") from error
+    return poses

@@ -3,6 +3,8 @@
 >>> import pne_sym
 >>> pne_sym.draw("stewart", "stewart.svg")  # doctest: +SKIP
 PosixPath('stewart.svg')
+>>> pne_sym.animate("stewart", "stewart.gif", poses)  # doctest: +SKIP
+PosixPath('stewart.gif')
 """
 
 from __future__ import annotations
@@ -14,24 +16,22 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
+from pne_sym.drawing.film import check_film, save_film
 from pne_sym.drawing.paper import check_path, save
 from pne_sym.drawing.planar import planar_picture
-from pne_sym.drawing.scene import scene_of
+from pne_sym.drawing.poses import Configuration, closed, pose_of
+from pne_sym.drawing.scene import Scene, ground_of, scene_of
 from pne_sym.drawing.shapes import Picture
 from pne_sym.drawing.spatial import spatial_picture
 from pne_sym.drawing.style import DRIVEN, EXTRA, JOINT, OUTLINE
 from pne_sym.drawing.view import ELEVATION, best_azimuth, view_from
 from pne_sym.generation import InputError, find
-from pne_sym.model.loops import Loops, legs_closed
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
 
-CLOSED = 1e-6
-"""Largest gap of a leg (m or rad) with which it is drawn."""
-_STAGES = 8
+LONGEST = 1000
+"""Frames of an animation."""
 
 
 def draw(
@@ -49,7 +49,8 @@ def draw(
         source: a name in the catalogue, a spec file, or a manipulator.
         path: of the picture; `.svg`, `.png` or `.pdf`.
         X: platform coordinates, then the extra ones; default home.
-        q: joint displacements that close the loops at X; default: found from home's.
+        q: first guess of the joint displacements at X; default: found along the
+            straight way from home.
         azimuth: where it is looked at from, degrees from x towards y; default: where
             the legs hide each other least.  Not used in the plane.
         elevation: how far above the horizon, degrees; default 20.
@@ -69,6 +70,44 @@ def draw(
     return Path(path)
 
 
+def animate(
+    source: str | os.PathLike[str] | Manipulator,
+    path: str | os.PathLike[str],
+    poses: Sequence[Sequence[float]],
+    q: Sequence[float] | None = None,
+    *,
+    fps: int = 25,
+    azimuth: float | None = None,
+    elevation: float | None = None,
+) -> Path:
+    """Draw a manipulator along a path and write the animation, a frame for each pose.
+
+    Args:
+        source: a name in the catalogue, a spec file, or a manipulator.
+        path: of the animation; `.gif`, or `.mp4` where ffmpeg is installed.
+        poses: X of each frame: platform coordinates, then the extra ones.
+        q: first guess of the joint displacements at the first pose; default: found
+            along the straight way from home.  Each pose is reached from the one before.
+        fps: frames per second, 1 to 100.
+        azimuth: as for `draw`; chosen for the first pose.
+        elevation: as for `draw`.
+
+    Returns:
+        The animation's path.
+
+    Raises:
+        SpecError: the source is at fault.
+        InputError: as for `draw`, the pose named; ffmpeg is not installed; no pose or
+            more than 1000; fps out of range.
+        OutputError: the file cannot be written.
+    """
+    check_film(Path(path), fps)
+    manipulator = find(source)
+    frames = pictures(manipulator, poses, q, azimuth=azimuth, elevation=elevation)
+    save_film(frames, Path(path), fps)
+    return Path(path)
+
+
 def picture(
     manipulator: Manipulator,
     X: Sequence[float] | None = None,
@@ -78,49 +117,55 @@ def picture(
     elevation: float | None = None,
 ) -> Picture:
     """The picture of a manipulator, as shapes; arguments as for `draw`."""
+    reached = [closed(manipulator, X, q)]
+    return _pictures(manipulator, reached, azimuth, elevation)[0]
+
+
+def pictures(
+    manipulator: Manipulator,
+    poses: Sequence[Sequence[float]],
+    q: Sequence[float] | None = None,
+    *,
+    azimuth: float | None = None,
+    elevation: float | None = None,
+) -> list[Picture]:
+    """The pictures of a manipulator along a path, as shapes; arguments as for `animate`."""
+    if not 1 <= len(poses) <= LONGEST:
+        raise InputError(f"poses: 1 to {LONGEST} are needed, not {len(poses)}")
+    reached: list[Configuration] = []
+    for number, X in enumerate(poses, start=1):
+        try:
+            first = not reached
+            reached.append(
+                closed(manipulator, X, q if first else None, None if first else reached[-1])
+            )
+        except InputError as error:
+            raise InputError(f"pose {number} of {len(poses)}: {error}") from error
+    return _pictures(manipulator, reached, azimuth, elevation)
+
+
+def _pictures(
+    manipulator: Manipulator,
+    reached: Sequence[Configuration],
+    azimuth: float | None,
+    elevation: float | None,
+) -> list[Picture]:
+    """Pictures that differ in what moves only: the base, the view and all sizes are common."""
     _check_angle("azimuth", azimuth)
     _check_angle("elevation", elevation)
-    scene = scene_of(manipulator, *_closed(manipulator, X, q))
-    if scene.planar:
-        found = planar_picture(scene)
-    else:
-        up = ELEVATION if elevation is None else elevation
-        found = spatial_picture(
-            scene, view_from(best_azimuth(scene, up) if azimuth is None else azimuth, up)
-        )
-    return dataclasses.replace(found, legend=_legend(manipulator))
+    scenes = [scene_of(manipulator, each.X.tolist(), each.q.tolist()) for each in reached]
+    ground = ground_of(scenes)
+    up = ELEVATION if elevation is None else elevation
 
+    def painted(scene: Scene) -> Picture:
+        same = dataclasses.replace(scene, size=ground.size)
+        return planar_picture(same, ground) if view is None else spatial_picture(same, view, ground)
 
-def _closed(
-    manipulator: Manipulator, X: Sequence[float] | None, q: Sequence[float] | None
-) -> tuple[list[float], list[float]]:
-    """The pose and the displacements to be drawn."""
-    home = manipulator.home
-    if X is None:
-        if q is not None:
-            raise InputError("q without X: a picture is drawn at home, at X, or at X and q")
-        return list(home.X), list(home.q)
-    loops = Loops(manipulator.space, manipulator.legs, manipulator.fixed_centre)
-    _check_length("X", X, len(home.X))
-    start, goal, found = np.array(home.X), np.array(X, dtype=float), np.array(home.q)
-    if q is not None:
-        _check_length("q", q, len(home.q))
-        found = np.array(q, dtype=float)
-    else:
-        for part in np.linspace(0.0, 1.0, _STAGES + 1)[1:]:
-            stage = start + part * (goal - start)
-            found[loops.extra] = stage[loops.size :]
-            found = legs_closed(loops, stage, found)
-    gaps = loops.gaps(goal, found)
-    if not max(gaps) <= CLOSED:
-        widest = loops.widest(goal, found)
-        raise InputError(f"X: legs[{widest.leg}] does not reach it; a gap of {widest.size} is left")
-    return goal.tolist(), found.tolist()
-
-
-def _check_length(name: str, values: Sequence[float], wanted: int) -> None:
-    if len(values) != wanted or not np.isfinite(np.array(values, dtype=float)).all():
-        raise InputError(f"{name}: {wanted} numbers are needed, not {list(values)}")
+    view = None
+    if not ground.planar:
+        view = view_from(best_azimuth(ground, up) if azimuth is None else azimuth, up)
+    legend = _legend(manipulator)
+    return [dataclasses.replace(painted(scene), legend=legend) for scene in scenes]
 
 
 def _check_angle(name: str, value: float | None) -> None:
@@ -140,4 +185,4 @@ def _legend(manipulator: Manipulator) -> tuple[tuple[str, str, str], ...]:
     return tuple(rows)
 
 
-__all__ = ["draw", "picture"]
+__all__ = ["animate", "check_film", "draw", "picture", "pictures", "pose_of", "save_film"]

@@ -16,7 +16,7 @@ from pne_sym.drawing.view import View
 Array = NDArray[np.float64]
 
 _FLAT = 0.1
-"""Feet whose distances from a plane stay below this part of their spread stand on one plate."""
+"""Feet nearer to a plane than this part of their lesser spread in it stand on one plate."""
 _BAR = 0.02
 """Anchors nearer to a line than this part of their spread lie on it."""
 
@@ -39,7 +39,7 @@ def base_plate(scene: Scene, view: View, sizes: Proportions) -> Plate:
     feet = np.vstack([bases, *_rail_ends(scene, normal)])
     top = float((feet @ normal).min()) - 3.0 * r
     paint, solids = Paint(BASE), []
-    if off > _FLAT * float(np.linalg.norm(np.ptp(bases, axis=0))) + 3.0 * r:
+    if off > _FLAT * _lesser_spread(bases) + 3.0 * r:
         top = -np.inf
         pads = [(base, base - 2.5 * r * normal) for base in bases]
     else:
@@ -162,6 +162,12 @@ def _plane(points: Array, toward: Array, size: float) -> tuple[Array, float]:
     else:
         normal = vt[2] if float(vt[2] @ toward) >= 0.0 else -vt[2]
     return normal, float(np.abs((points - middle) @ normal).max())
+
+
+def _lesser_spread(points: Array) -> float:
+    """How far points spread across the direction in which they spread most, in their plane."""
+    _, _, vt = np.linalg.svd(points - points.mean(axis=0))
+    return float(np.ptp(points @ vt[1]))
 
 
 def _outline(points: Array, normal: Array, margin: float, level: float) -> Array:

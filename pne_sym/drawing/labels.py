@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,42 +13,87 @@ from pne_sym.drawing.shapes import Label, Picture
 Array = NDArray[np.float64]
 
 BALLOON = 6.0
-"""Radius of the circle about a label, in typographic points."""
-_CLEARANCE = BALLOON + 0.8
-_APART = 13.5
+"""Least radius of the circle about a label, in typographic points."""
+_WITHIN = 0.9
+"""Between a text's corners and the circle about it."""
+_OFF = 0.8
+_APART = 1.5
 _RINGS = (5.0, 10.0, 15.0, 20.0, 26.0)
 _DIRECTIONS = 12
 _OTHER_LABEL = 3.0
 
 
-def label_places(picture: Picture, scale: float, shift: Array) -> list[Array]:
-    """Places on the page: a balloon moves to where it covers least, a little at most."""
+@dataclass(frozen=True)
+class Page:
+    """Where labels may stand, in typographic points.
+
+    Attributes:
+        low, high: corners; every label lies between them as a whole.
+        taken: polygons to keep clear of, such as the legend.
+    """
+
+    low: Array
+    high: Array
+    taken: tuple[Array, ...] = ()
+
+
+def extent(label: Label, text: tuple[float, float]) -> Array:
+    """Half the width and half the height of a label; `text`: width and height of its text."""
+    if not label.balloon:
+        return 0.5 * np.array(text)
+    return np.full(2, max(BALLOON, 0.5 * math.hypot(*text) + _WITHIN))
+
+
+def label_places(
+    picture: Picture, scale: float, shift: Array, extents: list[Array], page: Page
+) -> list[Array]:
+    """Places on the page: a balloon moves to where it covers least, a little at most.
+
+    Args:
+        picture: the shapes and the labels.
+        scale: typographic points of a metre in the picture's plane.
+        shift: the page's point at which the plane's origin lies.
+        extents: half the width and half the height of each label.
+        page: which no label leaves.
+    """
     shapes = [shape for shape in picture.shapes if not shape.ground]
-    outlines = [shape.points * scale + shift for shape in shapes]
-    wanted = [label.point * scale + shift + np.array(label.shift) for label in picture.labels]
-    fixed = zip(picture.labels, wanted, strict=True)
-    taken = [place for label, place in fixed if not label.balloon]
+    outlines = [shape.points * scale + shift for shape in shapes] + list(page.taken)
+    wanted = [
+        np.clip(label.point * scale + shift + np.array(label.shift), page.low + e, page.high - e)
+        for label, e in zip(picture.labels, extents, strict=True)
+    ]
+    fixed = zip(picture.labels, wanted, extents, strict=True)
+    taken = [
+        (place, max(BALLOON, float(e.max()))) for label, place, e in fixed if not label.balloon
+    ]
     places = []
-    for label, place in zip(picture.labels, wanted, strict=True):
-        found = _clear(label, place, outlines, taken)
+    for label, place, e in zip(picture.labels, wanted, extents, strict=True):
+        found = place
         if label.balloon:
-            taken.append(found)
+            candidates = [
+                np.clip(each, page.low + e, page.high - e)
+                for each in _candidates(place, np.array(label.shift))
+            ]
+            found = _clear(candidates, float(e[0]), outlines, taken)
+            taken.append((found, float(e[0])))
         places.append(found)
     return places
 
 
-def _clear(label: Label, place: Array, outlines: list[Array], taken: list[Array]) -> Array:
-    """The nearest place that covers nothing, or else least."""
-    if not label.balloon:
-        return place
-    lows = np.array([outline.min(axis=0) for outline in outlines]) - _CLEARANCE
-    highs = np.array([outline.max(axis=0) for outline in outlines]) + _CLEARANCE
-    best, least = place, math.inf
-    for candidate in _candidates(place, np.array(label.shift)):
+def _clear(
+    candidates: list[Array], radius: float, outlines: list[Array], taken: list[tuple[Array, float]]
+) -> Array:
+    """The first place at which a balloon covers nothing, or else least."""
+    clearance = radius + _OFF
+    lows = np.array([outline.min(axis=0) for outline in outlines]) - clearance
+    highs = np.array([outline.max(axis=0) for outline in outlines]) + clearance
+    best, least = candidates[0], math.inf
+    for candidate in candidates:
         near = np.flatnonzero(((lows < candidate) & (candidate < highs)).all(axis=1))
-        cost = float(sum(_covers(candidate, outlines[k]) for k in near))
+        cost = float(sum(_covers(candidate, clearance, outlines[k]) for k in near))
         cost += _OTHER_LABEL * sum(
-            float(np.linalg.norm(candidate - other)) < _APART for other in taken
+            float(np.linalg.norm(candidate - other)) < radius + reach + _APART
+            for other, reach in taken
         )
         if cost < least:
             best, least = candidate, cost
@@ -68,13 +114,13 @@ def _candidates(place: Array, shift: Array) -> list[Array]:
     return found
 
 
-def _covers(centre: Array, outline: Array) -> bool:
+def _covers(centre: Array, clearance: float, outline: Array) -> bool:
     """Whether a balloon touches a shape's edge or lies within it."""
     steps = np.roll(outline, -1, axis=0) - outline
     lengths = np.maximum((steps * steps).sum(axis=1), 1e-12)
     along = np.clip(((centre - outline) * steps).sum(axis=1) / lengths, 0.0, 1.0)
     gaps = outline + along[:, None] * steps - centre
-    if float((gaps * gaps).sum(axis=1).min()) < _CLEARANCE**2:
+    if float((gaps * gaps).sum(axis=1).min()) < clearance**2:
         return True
     after = outline + steps - centre
     before = outline - centre

@@ -1,19 +1,21 @@
-"""Pictures on paper: the one module that uses matplotlib."""
+"""Pictures on paper, by matplotlib."""
 
 from __future__ import annotations
 
 import io
 import math
 import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pne_sym.drawing.labels import BALLOON, label_places
+from pne_sym.drawing.labels import Page, extent, label_places
 from pne_sym.drawing.shapes import Label, Picture, Shape, disc
-from pne_sym.drawing.style import LABEL, LINE, OUTLINE
+from pne_sym.drawing.style import LABEL, OUTLINE
 from pne_sym.generation import InputError
 from pne_sym.writer import OutputError
 
@@ -25,12 +27,14 @@ Array = NDArray[np.float64]
 FORMATS = (".svg", ".png", ".pdf")
 WIDTH, HEIGHT = 432.0, 324.0
 """Of the page, in typographic points (1/72 inch)."""
-_MARGIN, _LEGEND = 22.0, 16.0
+_MARGIN, _LEGEND, _EDGE = 22.0, 16.0, 2.0
+_FONT, _SMALL = "DejaVu Sans", 8.0
+MISSING = "drawing needs matplotlib: pip install 'pne-sym[draw]'"
 _DPI = 200
 _DRAWN = re.compile(r' d="[^"]*"|translate\([^)]*\)')
 _LONG = re.compile(r"-?\d+\.\d+")
 _METADATA: dict[str, dict[str, Any]] = {
-    ".svg": {"Date": None, "Creator": None},
+    ".svg": {"Date": None, "Creator": None, "Format": None, "Type": None},
     ".png": {"Software": None},
     ".pdf": {"CreationDate": None, "Creator": None, "Producer": None},
 }
@@ -54,7 +58,15 @@ def save(picture: Picture, path: Path) -> None:
         OutputError: the file cannot be written.
     """
     check_path(path)
-    content = rendered(picture, path.suffix)
+    write(path, rendered(picture, path.suffix))
+
+
+def write(path: Path, content: bytes) -> None:
+    """Write the bytes of a picture file.
+
+    Raises:
+        OutputError: the file cannot be written.
+    """
     try:
         path.write_bytes(content)
     except OSError as error:
@@ -74,9 +86,7 @@ def rendered(picture: Picture, suffix: str) -> bytes:
     with mpl.rc_context({"svg.hashsalt": "pne_sym", "svg.fonttype": "path"}):
         page.savefig(buffer, format=suffix[1:], dpi=_DPI, metadata=_METADATA[suffix])
     content = buffer.getvalue()
-    if suffix != ".svg":
-        return content
-    return _compact(content.decode()).encode()
+    return _rounded(content.decode()).encode() if suffix == ".svg" else content
 
 
 def _shorter(number: re.Match[str]) -> str:
@@ -85,18 +95,74 @@ def _shorter(number: re.Match[str]) -> str:
     return "0" if text == "-0" else text
 
 
-def _compact(svg: str) -> str:
-    """The same picture in fewer bytes, and without digits that differ between machines."""
-    svg = _DRAWN.sub(lambda drawn: _LONG.sub(_shorter, drawn[0]), svg)
-    svg = re.sub(r"<metadata>.*?</metadata>\s*", "", svg, flags=re.DOTALL)
-    svg = re.sub(r'<g id="patch_\d+">\s*(<path [^>]*>)\s*</g>', r"\1", svg)
-    svg = re.sub(r"(?<=\d)\s*\nL (?=[-\d])", " ", svg)  # after M, more points are lines
-    svg = re.sub(r'\s*\nz\s*"', 'z"', svg)
-    svg = re.sub(r"(?<=[;:]) (?=[a-z#\d])", "", svg)
-    svg = svg.replace("; ", ";").replace(";stroke-linecap:round", "")
-    svg = svg.replace(f';stroke-width:{LINE}"', '"')
-    svg = svg.replace("stroke-linecap:butt", f"stroke-linecap:round;stroke-width:{LINE}")
-    return "\n".join(line.strip() for line in svg.splitlines() if line.strip()) + "\n"
+def _rounded(svg: str) -> str:
+    """The same picture without digits that differ between machines; commands stay as they are."""
+    return _DRAWN.sub(lambda drawn: _LONG.sub(_shorter, drawn[0]), svg)
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Where a picture, or one of several that follow each other, stands on the page.
+
+    Attributes:
+        scale, shift: from the picture's plane to the page.
+        width: of the page, in typographic points.
+        places: of the labels.
+        radii: of the circles about labels in balloons.
+    """
+
+    scale: float
+    shift: Array
+    width: float
+    places: tuple[Array, ...]
+    radii: tuple[float, ...]
+
+
+def layout(pictures: Sequence[Picture], samples: Sequence[Picture] = ()) -> Layout:
+    """A place for pictures that follow each other, with the labels of the first.
+
+    Args:
+        pictures: all of them; they have room on the page.
+        samples: those that labels keep clear of; default all.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    first = pictures[0]
+    points = np.vstack([shape.points for picture in pictures for shape in picture.shapes])
+    low, high = points.min(axis=0), points.max(axis=0)
+    bottom = _MARGIN + _LEGEND
+    room = np.array([WIDTH - 2 * _MARGIN, HEIGHT - _MARGIN - bottom])
+    extent_of_all = np.maximum(high - low, 1e-9)
+    scale = float((room / extent_of_all).min())
+    legend = sum(_legend_width(text) for _, _, text in first.legend)
+    wanted = 2 * _MARGIN + max(legend, math.ceil(scale * float(extent_of_all[0])))
+    width = min(WIDTH, wanted)
+    middle = np.array([width / 2, (bottom + HEIGHT - _MARGIN) / 2])
+    shift = middle - scale * 0.5 * (low + high)
+    extents = [extent(label, text_size(label.text, label.size)) for label in first.labels]
+    page = Page(
+        np.full(2, _EDGE), np.array([width, HEIGHT]) - _EDGE, tuple(_legend_boxes(first.legend))
+    )
+    shapes = tuple(shape for picture in samples or pictures for shape in picture.shapes)
+    places = label_places(replace(first, shapes=shapes), scale, shift, extents, page)
+    return Layout(scale, shift, width, tuple(places), tuple(float(e[0]) for e in extents))
+
+
+def text_size(text: str, size: float) -> tuple[float, float]:
+    """Width and height of a text, in typographic points; `size`: of its letters.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.font_manager import FontProperties
+        from matplotlib.textpath import text_to_path
+    except ImportError as error:
+        raise InputError(MISSING) from error
+    font = FontProperties(family=_FONT, size=size)
+    width, height, _ = text_to_path.get_text_width_height_descent(text, font, ismath=False)
+    return float(width), float(height)
 
 
 def figure(picture: Picture) -> Figure:
@@ -105,36 +171,36 @@ def figure(picture: Picture) -> Figure:
     Raises:
         InputError: matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise InputError("drawing needs matplotlib: pip install 'pne-sym[draw]'") from error
-    scale, shift, width = _placement(picture)
-    page = Figure(figsize=(width / 72.0, HEIGHT / 72.0), facecolor="white")
-    axes = page.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.set_axis_off()
-    axes.set_xlim(0.0, width)
-    axes.set_ylim(0.0, HEIGHT)
-    for shape in picture.shapes:
-        _add_shape(axes, shape, shape.points * scale + shift)
-    for label, place in zip(picture.labels, label_places(picture, scale, shift), strict=True):
-        _add_label(axes, label, place)
-    _add_legend(axes, picture)
+    plan = layout([picture])
+    page = blank(plan)
+    paint(page, picture, plan)
     return page
 
 
-def _placement(picture: Picture) -> tuple[float, Array, float]:
-    """Scale and shift from the picture's plane to the page, and the page's width."""
-    points = np.vstack([shape.points for shape in picture.shapes])
-    low, high = points.min(axis=0), points.max(axis=0)
-    bottom = _MARGIN + _LEGEND
-    room = np.array([WIDTH - 2 * _MARGIN, HEIGHT - _MARGIN - bottom])
-    extent = np.maximum(high - low, 1e-9)
-    scale = float((room / extent).min())
-    legend = sum(_legend_width(text) for _, _, text in picture.legend)
-    width = min(WIDTH, 2 * _MARGIN + max(legend, math.ceil(scale * float(extent[0]))))
-    middle = np.array([width / 2, (bottom + HEIGHT - _MARGIN) / 2])
-    return scale, middle - scale * 0.5 * (low + high), width
+def blank(plan: Layout) -> Figure:
+    """An empty page.
+
+    Raises:
+        InputError: matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise InputError(MISSING) from error
+    return Figure(figsize=(plan.width / 72.0, HEIGHT / 72.0), facecolor="white")
+
+
+def paint(page: Figure, picture: Picture, plan: Layout) -> None:
+    """Paint a picture on an empty page."""
+    axes = page.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    axes.set_xlim(0.0, plan.width)
+    axes.set_ylim(0.0, HEIGHT)
+    for shape in picture.shapes:
+        _add_shape(axes, shape, shape.points * plan.scale + plan.shift)
+    for label, place, radius in zip(picture.labels, plan.places, plan.radii, strict=True):
+        _add_label(axes, label, place, radius)
+    _add_legend(axes, picture)
 
 
 def _add_shape(axes: Any, shape: Shape, points: Array) -> None:
@@ -159,9 +225,9 @@ def _add_shape(axes: Any, shape: Shape, points: Array) -> None:
     patch.set_clip_path(None)
 
 
-def _add_label(axes: Any, label: Label, point: Array) -> None:
+def _add_label(axes: Any, label: Label, point: Array, radius: float) -> None:
     if label.balloon:
-        circle = disc(point, BALLOON)
+        circle = disc(point, radius)
         _add_shape(axes, Shape(circle, "#ffffff", label.colour, 0.7), circle)
     axes.text(
         point[0],
@@ -169,7 +235,7 @@ def _add_label(axes: Any, label: Label, point: Array) -> None:
         label.text,
         color=label.colour,
         fontsize=label.size,
-        family="DejaVu Sans",
+        family=_FONT,
         ha="center",
         va="center_baseline" if label.balloon else "center",
         clip_on=False,
@@ -184,8 +250,18 @@ def _add_legend(axes: Any, picture: Picture) -> None:
         centre = np.array([x, _LEGEND])
         _add_shape(axes, Shape(disc(centre, 4.2), fill, edge, width), disc(centre, 4.2))
         axes.text(
-            x + 9, _LEGEND - 0.5, text, color=LABEL, fontsize=8, family="DejaVu Sans", va="center"
+            x + 9, _LEGEND - 0.5, text, color=LABEL, fontsize=_SMALL, family=_FONT, va="center"
         )
+        x += _legend_width(text)
+
+
+def _legend_boxes(legend: Sequence[tuple[str, str, str]]) -> Iterator[Array]:
+    """What the legend covers, entry by entry: corners on the page."""
+    x = _MARGIN
+    for _, _, text in legend:
+        right = x + 9.0 + text_size(text, _SMALL)[0]
+        low, high = _LEGEND - 5.5, _LEGEND + 5.5
+        yield np.array([[x - 5.5, low], [right, low], [right, high], [x - 5.5, high]])
         x += _legend_width(text)
 
 

@@ -32,21 +32,27 @@ _ARROWS = (1.3, 1.0, 1.6, 0.7)
 """Lengths of the base frame's arrows to choose from: the first that ends beside no joint."""
 
 
-def planar_picture(scene: Scene) -> Picture:
-    """The picture of a mechanism in the plane."""
-    sizes = proportions(scene)
-    ground, bars, joints, labels = _bearings(scene, sizes), [], [], []
-    for number, leg in enumerate(scene.legs, start=1):
+def planar_picture(scene: Scene, ground: Scene | None = None) -> Picture:
+    """The picture of a mechanism in the plane.
+
+    Args:
+        scene: the mechanism.
+        ground: the scene that the base is laid out for; default the same.
+    """
+    ground = ground or scene
+    sizes = proportions(ground)
+    base, labels = _bearings(ground, sizes), []
+    for number, leg in enumerate(ground.legs, start=1):
         first = leg.parts[0]
         if _on_rail(leg):
             assert isinstance(first, Slide)
-            ground += _rail(first, _beside(first, leg), sizes)
-        for part in leg.parts:
-            bars += _bar(part, sizes)
-            joints += _joint(part, sizes)
+            base += _rail(first, _beside(first, leg), sizes)
         labels.append(_number(number, leg, sizes))
-    platform, (frames, letters) = _platform(scene, sizes), _base_frame(scene, sizes)
-    ordered = [*frames, *ground, *platform, *bars, *joints, *_platform_frame(scene, sizes)]
+    parts = [part for leg in scene.legs for part in leg.parts]
+    bars = [shape for part in parts for shape in _bar(part, sizes)]
+    joints = [shape for part in parts for shape in _joint(part, sizes)]
+    platform, (frames, letters) = _platform(scene, sizes), _base_frame(ground, sizes)
+    ordered = [*frames, *base, *platform, *bars, *joints, *_platform_frame(scene, sizes)]
     return Picture(tuple(ordered), (*letters, *labels), ())
 
 

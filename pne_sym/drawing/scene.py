@@ -7,7 +7,7 @@ specification's own numbers.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,6 +142,25 @@ def scene_of(manipulator: Manipulator, X: Sequence[float], q: Sequence[float]) -
         centre=None if m.fixed_centre is None else np.array(m.fixed_centre),
         size=size,
     )
+
+
+def ground_of(scenes: Sequence[Scene]) -> Scene:
+    """The first of several scenes, with rails as long and a box as large as all of them need."""
+    first = scenes[0]
+    if len(scenes) == 1:
+        return first
+    points = np.vstack([leg.points for scene in scenes for leg in scene.legs])
+    legs = []
+    for index, leg in enumerate(first.legs):
+        rail = leg.parts[0]
+        if isinstance(rail, Slide) and rail.grounded:
+            ends = np.array([scene.legs[index].points[2] for scene in scenes])
+            along = np.append((ends - rail.start) @ rail.axis, 0.0)
+            low, high = (rail.start + x * rail.axis for x in (along.min(), along.max()))
+            rail = replace(rail, start=low, end=high)
+        legs.append(replace(leg, parts=(rail, *leg.parts[1:])))
+    size = float(np.linalg.norm(np.ptp(points, axis=0))) or 1.0
+    return replace(first, legs=tuple(legs), size=size)
 
 
 def _walk(leg: Leg, q: Sequence[float], platform: Array, *, planar: bool) -> LegScene:

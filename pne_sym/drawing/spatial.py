@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pne_sym.drawing.frames import Plate, base_plate, frame_solids, platform_plate
 from pne_sym.drawing.order import painted
-from pne_sym.drawing.scene import Bar, LegScene, Scene, Slide, Turn
+from pne_sym.drawing.scene import Bar, LegScene, Part, Scene, Slide, Turn
 from pne_sym.drawing.shapes import Label, Picture, Shape
 from pne_sym.drawing.solids import Paint, Solid, ball, box, cylinder, perpendiculars
 from pne_sym.drawing.style import (
@@ -31,30 +31,38 @@ _TUBE_PART = 0.55
 _CROWDED = 8.0
 
 
-def spatial_picture(scene: Scene, view: View) -> Picture:
-    """The picture of a mechanism in space."""
-    sizes = proportions(scene)
-    plate = base_plate(scene, view, sizes)
+def spatial_picture(scene: Scene, view: View, ground: Scene | None = None) -> Picture:
+    """The picture of a mechanism in space.
+
+    Args:
+        scene: the mechanism.
+        view: where it is looked at from.
+        ground: the scene that the base is laid out for; default the same.
+    """
+    ground = ground or scene
+    sizes = proportions(ground)
+    plate = base_plate(ground, view, sizes)
     solids = list(plate.solids)
-    for leg in scene.legs:
-        solids += _Leg(leg, view, sizes).solids()
+    for leg, laid_out in zip(scene.legs, ground.legs, strict=True):
+        solids += _Leg(leg, view, sizes, laid_out.parts[0]).solids()
     solids += platform_plate(scene, view, sizes, plate.normal)
     frames, labels = frame_solids(scene, view, sizes)
     shapes = [shape for solid in painted(solids + frames, view) for shape in solid.shapes]
-    return Picture(tuple(shapes), (*labels, *_numbers(scene, view, plate, sizes)), ())
+    return Picture(tuple(shapes), (*labels, *_numbers(ground, view, plate, sizes)), ())
 
 
 def _numbers(scene: Scene, view: View, plate: Plate, sizes: Proportions) -> list[Label]:
-    """The legs' numbers, off the rim of the base plate."""
+    """The legs' numbers, off the rim of the base plate, or beside the posts where there is none."""
     bases = np.array([leg.base for leg in scene.legs])
-    feet = bases
+    feet, rim_at = bases, 1.5 * sizes.joint
     if np.isfinite(plate.top):
+        rim_at = 4.0 * sizes.joint
         feet = bases - np.outer(bases @ plate.normal - plate.top, plate.normal)
     away = feet - feet.mean(axis=0)
     labels = []
     for number, (foot, direction) in enumerate(zip(feet, away, strict=True), start=1):
         unit = direction / (float(np.linalg.norm(direction)) or 1.0)
-        rim = view.flat(foot + 4.0 * sizes.joint * unit)
+        rim = view.flat(foot + rim_at * unit)
         off = view.flat(unit)
         x, y = 10.0 * off / (float(np.linalg.norm(off)) or 1.0)
         if y > 2.0:  # behind the leg: beside its foot
@@ -67,8 +75,8 @@ def _numbers(scene: Scene, view: View, plate: Plate, sizes: Proportions) -> list
 class _Leg:
     """The solids of a leg."""
 
-    def __init__(self, leg: LegScene, view: View, sizes: Proportions) -> None:
-        self.leg, self.view, self.sizes = leg, view, sizes
+    def __init__(self, leg: LegScene, view: View, sizes: Proportions, rail: Part) -> None:
+        self.leg, self.view, self.sizes, self.rail = leg, view, sizes, rail
         self.crowded = sizes.apart < _CROWDED * sizes.joint
 
     def solids(self) -> list[Solid]:
@@ -166,19 +174,20 @@ class _Leg:
         """
         r = self.sizes.joint
         down = np.zeros(3) if self.crowded else self._away(slide, index) * 1.9 * r
-        travel = slide.end - slide.start
-        sense = slide.axis if float(travel @ slide.axis) >= 0.0 else -slide.axis
-        start, end = slide.start - 2.0 * r * sense, slide.end + 4.0 * r * sense
+        rail = self.rail
+        assert isinstance(rail, Slide)
+        sense = slide.axis if float((rail.end - rail.start) @ slide.axis) >= 0.0 else -slide.axis
+        start, end = rail.start - 2.0 * r * sense, rail.end + 4.0 * r * sense
         fill, edge, width = joint_colours(driven=slide.driven, extra=slide.extra)
-        rail = self._rod(start + down, end + down, 0.7 * r, BASE)
+        rod = self._rod(start + down, end + down, 0.7 * r, BASE)
         if self.crowded:
             half = 3.2 * r * slide.axis
             ends = slide.end - half, slide.end + half
-            return [rail, cylinder(self.view, *ends, 1.35 * r, Paint(fill, edge, width), r)]
+            return [rod, cylinder(self.view, *ends, 1.35 * r, Paint(fill, edge, width), r)]
         side = np.cross(slide.axis, down)
         side *= 1.5 * r / float(np.linalg.norm(side))
         halves = (2.2 * r * slide.axis, side, 0.45 * down)
-        return [rail, box(self.view, slide.end + down, halves, Paint(fill, edge, width))]
+        return [rod, box(self.view, slide.end + down, halves, Paint(fill, edge, width))]
 
     def _away(self, slide: Slide, index: int) -> Array:
         """Unit vector across the rail, away from the next link."""

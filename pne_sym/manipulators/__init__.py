@@ -11,12 +11,14 @@ from functools import cache
 from importlib import resources
 from importlib.resources.abc import Traversable
 
-from pne_sym.model.entry import nearest
+from pne_sym.model.entry import near
 from pne_sym.model.errors import SpecError, show
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.model.reader import from_text
 
 _SUFFIX = ".toml"
+_FEW = 3
+"""Names that are offered for a mistaken one."""
 
 
 @cache
@@ -33,13 +35,22 @@ def path(name: str) -> Traversable:
         SpecError: no such name (the message has the nearest ones).
     """
     if name not in names():
-        raise SpecError(
-            "catalogue",
-            "",
-            f"no manipulator {show(name)}{nearest(name, names())}",
-            "one of " + ", ".join(names()),
-        )
+        raise _unknown(name)
     return resources.files(__name__) / (name + _SUFFIX)
+
+
+def _unknown(name: str) -> SpecError:
+    """The error for a name that the catalogue does not have: the nearest few of it."""
+    like = near(name, names(), _FEW, likeness=0.5)
+    parts = [each for each in names() if name and name.lower() in each and each not in like]
+    few = [*like, *parts][:_FEW]
+    hint = f" (did you mean {' or '.join(few)}?)" if few else ""
+    return SpecError(
+        "catalogue",
+        "",
+        f"no manipulator {show(name)}{hint}",
+        f"one of the {len(names())} that pne-gen list shows, or a file (.toml, .json)",
+    )
 
 
 def load(name: str) -> Manipulator:

@@ -159,8 +159,13 @@ class Table:
 
 def nearest(name: str, known: Iterable[str]) -> str:
     """A hint with the known names nearest to a mistaken one, or nothing."""
-    close = difflib.get_close_matches(name[:60].lower(), list(known), n=3, cutoff=0.6)
+    close = near(name, known, 3)
     return f" (did you mean {' or '.join(close)}?)" if close else ""
+
+
+def near(name: str, known: Iterable[str], count: int, *, likeness: float = 0.6) -> list[str]:
+    """The known names most like a mistaken one, the nearest first; likeness is 0 to 1."""
+    return difflib.get_close_matches(name[:60].lower(), list(known), n=count, cutoff=likeness)
 
 
 def _join(where: str, name: object) -> str:

@@ -26,12 +26,12 @@ def read_file(path: Path) -> str:
         SpecError: unreadable, too large, not UTF-8, or of an unknown kind.
     """
     source = str(path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise SpecError(source, "", f"file of kind '{path.suffix}'", "a .toml or .json file")
     try:
         if not path.is_file():
             problem = "not a regular file" if path.exists() else "no such file"
             raise SpecError(source, "", problem, "a specification in TOML or JSON")
+        if path.suffix.lower() not in SUFFIXES:
+            raise SpecError(source, "", f"file of kind '{path.suffix}'", "a .toml or .json file")
         with path.open("rb") as stream:
             content = stream.read(MAX_BYTES + 1)
     except (OSError, ValueError) as error:

@@ -80,7 +80,8 @@ def from_mapping(data: Mapping[str, object], source: str) -> Manipulator:
     """
     table = Entry(source, "", data).table(FIELDS)
     name = read_name(table.require("name", "its name, such as my_robot"))
-    space = Space(table.require("space", "the task space").choice([space.value for space in Space]))
+    spaces = [space.value for space in Space]
+    space = Space(table.require("space", f"one of {', '.join(spaces)}").choice(spaces))
     legs = read_legs(table.require("legs", "a list of legs"), table.get("leg_types"), space)
     centre = _fixed_centre(table, space)
     return Manipulator(

@@ -22,6 +22,7 @@ from pne_sym.review.execution import execute
 from pne_sym.review.interface import interface_changes, operation_changes
 from pne_sym.review.model import Model, by_name, by_path, printed_equations, report_of
 from pne_sym.review.samples import length_of, random_parameters, random_states
+from pne_sym.review.written import as_written
 
 TOLERANCE = 1e-9
 PARAMETER_SETS = 4
@@ -61,7 +62,11 @@ def compare(
         (PARAMETER_SETS, runs.states),
         blocks if runs.comparable else (BlockDifference("all functions", Verdict.DIFFERENT),),
         equations,
-        tuple(interface_changes(before, after, runs.old_defaults, runs.new_defaults)),
+        as_written(
+            interface_changes(before, after, runs.old_defaults, runs.new_defaults),
+            before.written,
+            after.written,
+        ),
         tuple(operation_changes(before, after)),
     )
     return replace(found, notes=tuple(_notes(before, after, found, runs)))

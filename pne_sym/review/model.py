@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -33,6 +34,7 @@ class Model:
         source: text of the NumPy module.
         report: text of the derivation, where there is one.
         bundle: derivation and program, where it comes from a specification.
+        written: the specification as its author wrote it, parsed, where there is one.
     """
 
     label: str
@@ -40,6 +42,7 @@ class Model:
     source: str
     report: str = ""
     bundle: Bundle | None = field(default=None, repr=False)
+    written: Mapping[str, Any] | None = field(default=None, repr=False)
 
     @property
     def parameters(self) -> list[dict[str, Any]]:

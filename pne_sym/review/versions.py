@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import json
 import subprocess
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from pne_sym import manipulators
 from pne_sym.generation import InputError, find
-from pne_sym.model.files import MAX_BYTES, SUFFIXES
+from pne_sym.model.files import MAX_BYTES, SUFFIXES, parse, read_file
 from pne_sym.model.reader import from_text
 from pne_sym.review.model import Model, from_manipulator
 from pne_sym.writer import GENERATOR
@@ -37,11 +39,21 @@ def find_version(text: str) -> Model:
         if path.is_dir():
             return _folder(text, path.resolve().name, lambda name: _read(path / name))
         if path.exists():
-            return from_manipulator(text, find(path))
+            return _specification(text, read_file(path), path.suffix)
     revision, colon, inside = text.partition(":")
     if colon:
         return _from_git(text, revision, inside)
+    if text in manipulators.names():
+        file = manipulators.path(text)
+        return _specification(text, file.read_text(encoding="utf-8"), Path(file.name).suffix)
     return from_manipulator(text, find(text))
+
+
+def _specification(label: str, content: str, suffix: str) -> Model:
+    """A specification compiled, together with what its author wrote."""
+    written = parse(content, suffix, label)
+    model = from_manipulator(label, from_text(content, suffix, label))
+    return replace(model, written=written if isinstance(written, Mapping) else None)
 
 
 def _from_git(text: str, revision: str, inside: str) -> Model:
@@ -65,7 +77,7 @@ def _from_git(text: str, revision: str, inside: str) -> Model:
     content = _git(text, "cat-file", "blob", f"{revision}:{inside}")
     if len(content) > MAX_BYTES:
         raise InputError(f"{text[:100]!r} is larger than {MAX_BYTES} bytes")
-    return from_manipulator(text, from_text(content, suffix, text))
+    return _specification(text, content, suffix)
 
 
 def _git(text: str, *arguments: str) -> str:

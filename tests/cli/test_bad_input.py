@@ -63,6 +63,9 @@ def test_a_field_at_fault(path: str, value: Any, part: str, tmp_path: Path) -> N
 
 FILES: list[tuple[str, bytes | None, str]] = [
     ("none.toml", None, "none.toml: no such file"),
+    ("./none", None, "none: no such file; expected a specification in TOML or JSON"),
+    ("none.tml", None, "none.tml: no such file; expected a specification in TOML or JSON"),
+    ("a.toml", b"name = 'a_b'", "missing field 'space'; expected space = one of point, planar, "),
     ("a.yaml", b"", "a.yaml: file of kind '.yaml'; expected a .toml or .json file"),
     ("a.toml", b"name = \n", "a.toml: syntax error: Invalid value (at line 1, column 8)"),
     ("a.toml", b"name = 'a'\nname = 'b'\n", "syntax error: Cannot overwrite a value"),

@@ -27,6 +27,15 @@ def test_unknown_model_names_the_nearest(tmp_path: Path) -> None:
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    ("word", "command"), [("lst", "list"), ("chekc", "check"), ("dif", "diff"), ("drew", "draw")]
+)
+def test_a_mistyped_command(word: str, command: str, tmp_path: Path) -> None:
+    done = pne_gen(word, cwd=tmp_path)
+    assert_refused(done, f"no command or manipulator '{word}'; did you mean pne-gen {command}?")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_unknown_second_model_leaves_nothing_written(tmp_path: Path) -> None:
     assert_refused(pne_gen("stewart", "zzz", "--out", tmp_path / "out"), "'zzz'")
     assert not (tmp_path / "out").exists()

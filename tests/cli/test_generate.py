@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
 import pne_sym.manipulators
+from pne_sym.cli.app import _check, _generate
+from pne_sym.cli.console import Report, Step
+from pne_sym.generation import Compiled
+from pne_sym.model.manipulator import Manipulator
 from tests.cli.program import PROGRAM, environment, on_a_terminal, pne_gen, tree
 
 STEWART_SPEC = Path(pne_sym.manipulators.__file__).with_name("stewart.toml")
@@ -121,12 +126,54 @@ def test_progress_shows_on_a_terminal_and_leaves_the_result(tmp_path: Path) -> N
     assert f"wrote {tmp_path}/stewart" in shown
 
 
-def test_list_has_a_tab_between_name_and_title_when_piped() -> None:
+def test_help_is_a_word_too() -> None:
+    assert pne_gen("help").stdout == pne_gen("--help").stdout
+    assert pne_gen("help", "draw").stdout == pne_gen("draw", "--help").stdout
+
+
+def test_list_has_tabs_between_when_piped() -> None:
     done = pne_gen("list")
     assert done.returncode == 0
     rows = [line.split("\t") for line in done.stdout.splitlines()]
-    assert [name for name, _ in rows] == list(pne_sym.manipulators.names())
-    assert all(title for _, title in rows)
+    assert [row[0] for row in rows] == list(pne_sym.manipulators.names())
+    facts = {row[0]: row[1:] for row in rows}
+    assert facts["stewart"] == ["6-UPS Stewart platform", "6", "6 P", "6-UPS"]
+    assert facts["stewart_sps"][1:] == ["12 (6 passive)", "6 P", "6-URPS"]
+    assert facts["planar_mixed"][1:] == ["3", "2 P + 1 R", "1-RPR+1-RRR+1-PRR"]
+    assert facts["planar_4rpr"][1:] == ["3", "4 P", "4-RPR"]
+
+
+def test_list_is_a_table_on_a_terminal() -> None:
+    code, shown = on_a_terminal("list", COLUMNS="150")
+    head, *lines = shown.splitlines()
+    assert code == 0
+    assert head.split() == ["name", "freedoms", "actuators", "legs", "title"]
+    assert len(lines) == len(pne_sym.manipulators.names())
+    for column in head.split():
+        place = head.index(column)
+        assert all(line[place - 1] == " " != line[place] for line in lines if place)
+
+
+@pytest.mark.parametrize("run", [_generate, _check])
+def test_progress_names_the_model_at_work(
+    run: Callable[..., object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its name is shown before the work on it begins, and that of no other."""
+    shown: list[str] = []
+    at_work: list[tuple[str, str]] = []
+
+    def compile_many(models: list[Manipulator], jobs: int) -> Iterator[Compiled]:
+        for model in models:
+            at_work.append((model.name, shown[-1]))
+            yield Compiled(model, {f"{model.name}.json": "{}"})
+
+    monkeypatch.setattr("pne_sym.generation.compile_many", compile_many)
+    monkeypatch.setattr(Step, "working_on", lambda self, text: shown.append(text))
+    names = ["sixbar", "delta", "stewart"]
+    models = [pne_sym.load(name) for name in names]
+    arguments = (models, tmp_path) if run is _generate else (names, models, tmp_path)
+    run(*arguments, jobs=1, report=Report(quiet=True))
+    assert at_work == [(name, name) for name in names]
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from pne_sym import manipulators
-from pne_sym.drawing.labels import BALLOON, label_places
+from pne_sym.drawing.labels import BALLOON, Page, extent, label_places
 from pne_sym.drawing.order import overlap, painted
 from pne_sym.drawing.scene import Scene, Slide, Turn, scene_of
 from pne_sym.drawing.shapes import Label, Picture, Shape, disc, hull, rounded
@@ -136,7 +136,9 @@ def test_a_circle_of_covering_is_painted_all_the_same() -> None:
 def test_balloons_stand_clear_of_shapes_and_of_each_other() -> None:
     shape = Shape(20.0 * SQUARE)
     labels = tuple(Label(np.array([19.0, 10.0]), str(k), (4.0, 0.0), balloon=True) for k in (1, 2))
-    places = label_places(Picture((shape,), labels, ()), 1.0, np.zeros(2))
+    extents = [extent(label, (4.0, 5.0)) for label in labels]
+    page = Page(np.full(2, -100.0), np.full(2, 100.0))
+    places = label_places(Picture((shape,), labels, ()), 1.0, np.zeros(2), extents, page)
     assert np.linalg.norm(places[0] - places[1]) > 2 * BALLOON
     for place in places:
         outside = np.maximum(np.maximum(place - 20.0, -place), 0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -82,8 +83,25 @@ def test_unknown_name_has_the_nearest() -> None:
     with pytest.raises(SpecError, match=r"no manipulator 'stewrt' \(did you mean stewart"):
         manipulators.load("stewrt")
     for name in ("", "../stewart", "stewart.toml", "x" * 5000, "\n"):
-        with pytest.raises(SpecError, match="expected one of delta, "):
+        with pytest.raises(SpecError, match=r"expected one of the \d+ that pne-gen list shows"):
             manipulators.load(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "offered"),
+    [
+        ("stewrt", ["stewart", "stewart_sps", "stewart_7ups"]),
+        ("3rrr", ["planar_3rrr", "hybrid_3rrrs", "hybrid_3rrrs_redundant"]),
+        ("Delta", ["delta"]),
+        ("zzzzzz", []),
+    ],
+)
+def test_the_nearest_few_are_offered_not_all(name: str, offered: list[str]) -> None:
+    with pytest.raises(SpecError) as caught:
+        manipulators.load(name)
+    words = set(re.findall(r"\w+", str(caught.value)))
+    assert [each for each in offered if each in words] == offered
+    assert words & set(manipulators.names()) == set(offered)
 
 
 def test_path_is_a_specification_file() -> None:
