@@ -266,7 +266,7 @@ def completed_wrenches(
             g.leg_type.name,
             tuple(vectors),
             tuple(force for force, _ in parts),
-            (*(sp.S.One for _ in chosen), *freedoms.scales),
+            (*(sp.S.One if a.kind is Kind.SLIDE else g.size for a in chosen), *freedoms.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
             tuple(amounts for _, amounts in parts),
