@@ -12,16 +12,14 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
-from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Law
 from pne_sym.mechanics.leg_geometry import LegGeometry
-from pne_sym.mechanics.scope import velocity_vectors
 from pne_sym.mechanics.structure import LegType
-from pne_sym.model.manipulator import JointKind, Manipulator
+from pne_sym.model.kinematics import chain_pose
+from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, ZeroVector, vector_sum
 
-Array = NDArray[np.float64]
 SMALLEST = 1e-3
 """A leg's length is at least this fraction of the machine's: wrists have no lever arms."""
 _DIGITS = 6  # more would differ between machines by rounding
@@ -61,13 +59,9 @@ def lever_arms(manipulator: Manipulator) -> list[float]:
     found = []
     for leg, start in zip(manipulator.legs, starts, strict=False):
         q = np.array(manipulator.home.q[start : start + len(leg.joints)])
-        columns = velocity_vectors(leg, q).T
-        turning = [
-            float(np.linalg.norm(column))
-            for joint, column in zip(leg.joints, columns, strict=True)
-            if joint.kind is not JointKind.PRISMATIC
-        ]
-        found.append(max(turning, default=0.0))
+        turns = [joint.turns for joint in leg.joints]
+        arms = np.linalg.norm(chain_pose(leg, q).velocities[:, turns], axis=0)
+        found.append(float(arms.max(initial=0.0)))
     return found
 
 
