@@ -44,6 +44,8 @@ def turned(name: str) -> Manipulator:
         X[-1] = q[extra_indices(spec)] = EXTRA[name]
     spec = replace(spec, home=Home(tuple(map(float, X)), tuple(map(float, q))))
     for number, where in enumerate(joint_slices(spec)):
+        if spec.legs[number].platform_joint.kind is PlatformJointKind.RIGID:
+            continue  # turned over, it would hold the platform the wrong way round
         others = _other_closures(spec, number, rng)
         if others:
             q[where] = others[number % len(others)]
