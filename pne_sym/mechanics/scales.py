@@ -77,7 +77,9 @@ def define_size(book: Book, g: LegGeometry, home: HomeLengths) -> None:
     length from vanishing with the offsets.
     """
     turning = [j for j in range(1, g.count + 1) if g.turns(j)]
-    slides = any(not g.turns(j) or j in g.pitch for j in range(min(turning, default=1), g.count + 1))
+    slides = any(
+        not g.turns(j) or j in g.pitch for j in range(min(turning, default=1), g.count + 1)
+    )
     g.arm = home.arm
     squares = [_across_square(g, group, turning[0]) for group in turning]
     squares += [pitch**2 for pitch in g.pitch.values()]

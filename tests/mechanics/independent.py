@@ -20,7 +20,6 @@ from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
 from tests.oracle.jets import cross_matrix
 
-
 _SLIDE = JointKind.PRISMATIC
 
 

@@ -25,7 +25,8 @@ from tests.oracle.jets import Array
 from tests.oracle.randomisation import vector3
 from tests.oracle.specs import State
 
-_MOVING_ORIGIN = (Space.SPATIAL, Space.PLANAR, Space.TRANSLATIONAL)
+MOVING_ORIGIN = (Space.SPATIAL, Space.PLANAR, Space.TRANSLATIONAL)
+"""Spaces in which any point of the platform can be its origin."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,13 @@ class Shifts:
     seats: Array
 
 
+def no_shifts(manipulator: Manipulator) -> Shifts:
+    """Everything stays where it is."""
+    legs, joints = len(manipulator.legs), len(manipulator.home.q)
+    nothing = np.zeros((legs, 3))
+    return Shifts(nothing[0], nothing[0], np.zeros(legs), nothing, np.zeros(joints), nothing)
+
+
 def drawn_shifts(
     manipulator: Manipulator, rng: np.random.Generator, size: float, *, seats: bool
 ) -> Shifts:
@@ -69,7 +77,7 @@ def drawn_shifts(
 
     return Shifts(
         base=shift(3) * flat,
-        platform=shift(3) * flat * (manipulator.space in _MOVING_ORIGIN),
+        platform=shift(3) * flat * (manipulator.space in MOVING_ORIGIN),
         first_axis=shift(legs),
         first_offset=shift(legs, 3) * flat,
         slides=shift(joints),
@@ -89,20 +97,9 @@ class Rewriting:
         self.before, self.shifts = before, shifts
         self.moved_q = np.zeros(len(before.home.q))
         legs = []
-        for number, (leg, where) in enumerate(
-            zip(before.legs, joint_slices(before), strict=True)
-        ):
-            leg = _seated(leg, shifts.seats[number], planar=is_planar(before.space))
-            leg, self.moved_q[where] = _slid(leg, shifts.slides[where])
-            leg = _along_first_axis(leg, shifts.first_axis[number], self._flat())
-            leg = _against_offset(leg, shifts.first_offset[number])
-            legs.append(
-                replace(
-                    leg,
-                    base_point=vector3(np.array(leg.base_point) + shifts.base),
-                    platform_point=vector3(np.array(leg.platform_point) - shifts.platform),
-                )
-            )
+        for number, where in enumerate(joint_slices(before)):
+            leg, self.moved_q[where] = self._leg(number, shifts.slides[where])
+            legs.append(leg)
         body = before.platform
         self.after = replace(
             before,
@@ -118,6 +115,17 @@ class Rewriting:
 
     def _flat(self) -> bool:
         return is_planar(self.before.space)
+
+    def _leg(self, number: int, slides: Array) -> tuple[Leg, Array]:
+        """A leg told from elsewhere, and how its displacements change."""
+        shifts, flat = self.shifts, self._flat()
+        seated = _seated(self.before.legs[number], shifts.seats[number], planar=flat)
+        slid, moved = _slid(seated, slides)
+        along = _along_first_axis(slid, shifts.first_axis[number], flat)
+        leg = _against_offset(along, shifts.first_offset[number])
+        base = vector3(np.array(leg.base_point) + shifts.base)
+        end = vector3(np.array(leg.platform_point) - shifts.platform)
+        return replace(leg, base_point=base, platform_point=end), moved
 
     # ---- states --------------------------------------------------------------------------
 
@@ -206,9 +214,7 @@ def _moved_link(leg: Leg, number: int, along: Array) -> Leg:
     end = leg.platform_joint
     if number + 1 < len(joints):
         following = joints[number + 1]
-        joints[number + 1] = replace(
-            following, offset=vector3(np.array(following.offset) - along)
-        )
+        joints[number + 1] = replace(following, offset=vector3(np.array(following.offset) - along))
     else:
         end = replace(end, offset=vector3(np.array(end.offset) - along))
     return replace(leg, joints=tuple(joints), platform_joint=end)
@@ -257,4 +263,3 @@ def _seated(leg: Leg, by: Array, *, planar: bool) -> Leg:
         platform_joint=replace(end, offset=vector3(np.array(end.offset) + by)),
         platform_point=vector3(np.array(leg.platform_point) + on_platform),
     )
-
