@@ -214,10 +214,11 @@ class LatexPrinter:
         number = abs(number)
         over = [self._scalar_factor(*item) for item in numerator]
         under = [self._scalar_factor(*item) for item in denominator]
-        if number.q != 1:
-            under.insert(0, str(number.q))
-        if number.p != 1:
-            over.insert(0, str(number.p))
+        if isinstance(number, sp.Float):
+            over.insert(0, f"{float(number):g}")
+        else:
+            under[:0] = [str(number.q)] if number.q != 1 else []
+            over[:0] = [str(number.p)] if number.p != 1 else []
         if under:
             return self._fraction(over, under, of, negative)
         if of is None:

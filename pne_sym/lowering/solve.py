@@ -31,7 +31,7 @@ class Screws:
 
     Attributes:
         rows: the matrix, by rows; rows that are zero throughout are left out.
-        sizes: per column, a parameter by which it is measured.
+        sizes: per column, a parameter by which it is measured once the rows have their weights.
         weights: per row, the parameter that makes it comparable with the others.
         keep: stores what is worth keeping, and forgets it with a rolled-back trial.
     """
@@ -105,8 +105,10 @@ class _System:
         return self.screws.rows[j][i] if self.across else self.screws.rows[i][j]
 
     def size(self, i: int, j: int) -> Atom:
-        """What the entry is measured by."""
-        return self.screws.sizes[i if self.across else j]
+        """What the entry is measured by: the size of its column, without its row's weight."""
+        column, row = (i, j) if self.across else (j, i)
+        size, weight = self.screws.sizes[column], self.screws.weights[row]
+        return sp.S.One if size == weight else self.b.divide(size, weight)
 
     def hint(self, j: int) -> str:
         """Name for an unknown."""

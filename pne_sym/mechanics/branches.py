@@ -53,9 +53,9 @@ def _signs_of_leg(
     for equation in chapter:
         for symbol in branches.keys() - signs.keys():
             if symbol in getattr(equation.rhs, "free_symbols", ()):
-                signs[symbol] = _sign(
-                    name, index, branches[symbol].joint, evaluate(branches[symbol].root, values)
-                )
+                branch = branches[symbol]
+                root = evaluate(branch.root, values) / g.arm**branch.power
+                signs[symbol] = _sign(name, index, branch.joint, root)
                 values[symbol.name] = float(signs[symbol])
         if equation.name not in values:
             values[equation.name] = evaluate(equation.rhs, values)

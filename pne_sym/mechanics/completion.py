@@ -78,9 +78,11 @@ class _State:
 
     Attributes:
         freedoms: (3 + k, m) unit columns: velocity of the connection point in the last link's
-            axes, angular velocity along the k moment directions.
-        effect: (nt, 3 + k) of wrenches at the connection point on the platform's freedoms.
-        turns: (3 + k, 3) turns of the last link about the platform origin.
+            axes by the length of the leg's lever arms, angular velocity along the k moment
+            directions.
+        effect: (nt, 3 + k) of wrenches at the connection point (force times that length, moment)
+            on the platform's freedoms.
+        turns: (3 + k, 3) turns of the last link about the platform origin, as the freedoms.
     """
 
     freedoms: Array
@@ -195,8 +197,8 @@ def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: P
     tip = chain.last @ g.canonical[g.group[g.count]][row]
     arm = leg_R_platform @ np.array(leg.platform_point)
     n = moment_directions(g.leg_type, leg, chain.last, leg_R_platform)
-    columns = np.vstack([tip.T @ chain.velocities, n @ chain.spins])[:, free]
-    about_origin = np.vstack([tip.T @ np.cross(tip.T, arm).T, n @ tip])
+    columns = np.vstack([tip.T @ chain.velocities / g.arm, n @ chain.spins])[:, free]
+    about_origin = np.vstack([tip.T @ np.cross(tip.T, arm).T / g.arm, n @ tip])
     effect = {
         Space.TRANSLATIONAL: np.eye(3, len(columns)),
         Space.SPHERICAL: about_origin.T,
@@ -266,7 +268,7 @@ def completed_wrenches(
             g.leg_type.name,
             tuple(vectors),
             tuple(force for force, _ in parts),
-            (*(sp.S.One for _ in chosen), *freedoms.scales),
+            (*(sp.S.One if a.kind is Kind.SLIDE else g.size for a in chosen), *freedoms.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
             tuple(amounts for _, amounts in parts),

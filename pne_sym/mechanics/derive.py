@@ -17,6 +17,7 @@ from pne_sym.mechanics.mobility import check_solvable
 from pne_sym.mechanics.notation import with_symbols
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
+from pne_sym.mechanics.scales import define_size, home_lengths
 from pne_sym.mechanics.scope import check_scope
 from pne_sym.mechanics.structure import LegType, leg_types
 from pne_sym.model.kinematics import TASK_SPACES, TaskSpace
@@ -97,6 +98,7 @@ def _derive_leg(
     prefix, title = leg_type.name, leg_type.architecture
     book.chapter(f"{prefix}-G", f"Geometry and inertia of a {title} leg", "", prefix)
     g = build_geometry(book, leg_type, suffix, space.planar)
+    define_size(book, g, home_lengths(manipulator, leg_type))
     g.pure_moment = force_vanishes(manipulator, g)
     bodies = introduce_bodies(book, g, space.planar)
     carried = any(body.at_tip for body in bodies)

@@ -33,11 +33,13 @@ class Branch:
         joint: joint number.
         root: expression with the sign that the branch has (uses the true
             cosine and sine, or displacement, of the joint).
+        power: of a length that the root is.
     """
 
     symbol: sp.Symbol
     joint: int
     root: Any
+    power: int
 
 
 @dataclass
@@ -446,22 +448,19 @@ class _Solver:
     def _turned(self, j: int, K: Any, N: Any, C: Any, method: str) -> Any:
         """Angle of joint j from K cos + N sin = C; returns the root, signed by the branch."""
         g, of_product = self.g, _UNITS[method][2]
-        unit, scale = {
-            "linear": ("m^2", g.size**2),
-            "sphere": ("m^4", g.size**4),
-            "orientation": ("-", sp.S.One),
-        }[method]
+        power = {"linear": 1, "sphere": 2, "orientation": 0}[method]
+        unit = {0: "-", 1: "m^2", 2: "m^4"}[power]
         rho2 = self._scalar(
             f"rho2_{j}",
             K * K + N * N,
             rf"\rho_{{{j}}}^2",
             "squared amplitude",
             unit,
-            conditions=(Condition(Trouble.SINGULAR, K * K + N * N, scale, 2),),
+            conditions=(Condition(Trouble.SINGULAR, K * K + N * N, g.size ** (2 * power), 2),),
         )
         sigma = self._branch_symbol(j)
         c, s = sp.Symbol(g.name(f"c_{j}"), real=True), sp.Symbol(g.name(f"s_{j}"), real=True)
-        self.branches.append(Branch(sigma, j, K * s - N * c))
+        self.branches.append(Branch(sigma, j, K * s - N * c, power))
         if C == 0:
             root = self._scalar(
                 f"root_{j}",
@@ -704,7 +703,7 @@ class _Solver:
         )
         sigma = self._branch_symbol(j)
         q = sp.Symbol(g.name(f"q_{j}"), real=True)
-        self.branches.append(Branch(sigma, j, q * pitch - along))
+        self.branches.append(Branch(sigma, j, q * pitch - along, 1))
         self.q[j] = self.book.define(
             q.name,
             (along + sigma * sp.sqrt(discriminant)) / pitch,

@@ -48,7 +48,8 @@ class LegGeometry:
             fixed in the platform) that the platform joint keeps perpendicular.
         end_pattern: canonical components of the platform joint's axis in the last link:
             0, 1, -1 by structure, else None.
-        size: characteristic length of the leg (scalar parameter).
+        size: length of the leg's lever arms (scalar parameter), see `scales`.
+        arm: the same at home, in numbers.
         axes_at: axis directions (legs, joints, 3) in leg axes with all joints at
             zero, and with extra joints at arbitrary displacements.
         canonical: canonical axes as columns in spec axes (legs, 3, 3), by group.
@@ -72,6 +73,7 @@ class LegGeometry:
     base_point: Any = None
     platform_point: Any = None
     size: Any = None
+    arm: float = 1.0
     pairs: list[tuple[VectorSymbol, VectorSymbol]] = field(default_factory=list)
     end_pattern: tuple[Any, ...] = ()
     axes_at: list[Array] = field(default_factory=list)
@@ -179,7 +181,6 @@ def build_geometry(book: Book, leg_type: LegType, suffix: str, planar: bool) -> 
     builder.offsets()
     builder.frames()
     builder.platform_joint()
-    builder.size()
     return geometry
 
 
@@ -715,23 +716,6 @@ class _Builder:
             rf"\mathbf a_{{p{k + 1}}}",
             "direction of the platform joint, fixed in the platform",
             "-",
-        )
-
-    def size(self) -> None:
-        """Characteristic length by which singular legs are recognised."""
-        vectors = [
-            self.g.base_point,
-            self.g.platform_point,
-            *(v for v in self.g.offset.values() if v != ZeroVector),
-        ]
-        self.g.size = self.book.define(
-            self.g.name("size"),
-            sp.sqrt(sp.Add(*(Dot(v, v) for v in vectors))),
-            r"\ell",
-            "size of the leg, the measure of what is near singular",
-            Law.LUMPING,
-            unit="m",
-            parameter=True,
         )
 
 

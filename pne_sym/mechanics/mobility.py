@@ -89,7 +89,8 @@ def mobility(manipulator: Manipulator) -> Mobility:
 section 3 of the paper: ordinary (3.1)
     """
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
-    closure, constraints, singular = _closure(manipulator)
+    closure, by_leg, singular = _closure(manipulator)
+    constraints = sum(by_leg)
     twist = len(TASK_SPACES[manipulator.space].components)
     rates = null_space(closure)
     freedoms = rates.shape[1]
@@ -106,7 +107,7 @@ section 3 of the paper: ordinary (3.1)
         passive=passive,
         undriven=freedoms - held,
         singular_legs=singular,
-        cases=_cases(manipulator, freedoms, passive, constraints),
+        cases=_cases(manipulator, freedoms, passive, by_leg),
     )
 
 
@@ -190,37 +191,39 @@ def null_space(matrix: Array) -> Array:
     return basis
 
 
-def _closure(manipulator: Manipulator) -> tuple[Array, int, tuple[int, ...]]:
-    """Closure conditions by the rates of platform and joints; constraints; singular legs."""
+def _closure(manipulator: Manipulator) -> tuple[Array, tuple[int, ...], tuple[int, ...]]:
+    """Closure conditions by the rates of platform and joints; constraints by leg; singular legs."""
     m = manipulator
     loops = Loops(m.space, m.legs, m.fixed_centre)
     pose = pose_at(m.space, m.home.X, m.fixed_centre)
     twist, q = TASK_SPACES[m.space].components, np.array(m.home.q)
-    rows, constraints, singular = [], 0, []
+    rows, constraints, singular = [], [], []
     for index, (leg, s) in enumerate(zip(m.legs, loops.slices(), strict=True)):
         _, by_q, by_twist = leg_gap(leg, q[s], pose)
         by_twist = by_twist[:, twist]
         own = by_q[:, ~loops.extra[s]]
         rank = _rank(own)
-        constraints += _rank(np.hstack([own, by_twist])) - rank
+        constraints.append(_rank(np.hstack([own, by_twist])) - rank)
         if rank < own.shape[1]:
             singular.append(index)
         row = np.zeros((by_q.shape[0], len(twist) + len(q)))
         row[:, : len(twist)] = by_twist
         row[:, len(twist) + s.start : len(twist) + s.stop] = by_q
         rows.append(row)
-    return np.vstack(rows), constraints, tuple(singular)
+    return np.vstack(rows), tuple(constraints), tuple(singular)
 
 
 def _cases(
-    manipulator: Manipulator, freedoms: int, passive: int, constraints: int
+    manipulator: Manipulator, freedoms: int, passive: int, constraints: tuple[int, ...]
 ) -> tuple[str, ...]:
     joints = [joint for leg in manipulator.legs for joint in leg.joints]
     drives = [sum(joint.actuated for joint in leg.joints) for leg in manipulator.legs]
     kinematic = any(joint.extra and joint.actuated for joint in joints)
     driven = freedoms - passive  # that the drives are to determine
     found = []
-    if len(manipulator.legs) > driven:
+    # A leg without drives that restricts the platform guides it: it is none too many.
+    bearing = sum(drives[k] > 0 or not restricts for k, restricts in enumerate(constraints))
+    if bearing > driven:
         found.append("3.3")
     if max(drives) > 1:
         if sum(drives) > driven:
@@ -231,7 +234,7 @@ def _cases(
         found.append("3.5")
     if passive:
         found.append("3.6")
-    if constraints:
+    if any(constraints):
         found.append("3.7")
     return tuple(found) or ("3.1",)
 

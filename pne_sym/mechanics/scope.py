@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from pne_sym.mechanics.leg_geometry import across
+from pne_sym.mechanics.scales import home_lengths
 from pne_sym.mechanics.structure import LegType, is_coordinate
 from pne_sym.model.errors import SpecError
 from pne_sym.model.kinematics import Array, ChainPose, TaskSpace, chain_pose, pose_at
@@ -47,11 +48,12 @@ def _check_independent(
     """Refuse a leg whose freedoms are dependent at home."""
     starts = np.cumsum([0, *(len(leg.joints) for leg in manipulator.legs)])
     pose = pose_at(manipulator.space, manipulator.home.X, manipulator.fixed_centre)
+    length = home_lengths(manipulator, leg_type).arm
     for index in leg_type.indices:
         leg = manipulator.legs[index]
         q = np.array(manipulator.home.q[starts[index] : starts[index + 1]])
         chain = chain_pose(leg, q)
-        columns = chain.velocities[:, freedoms]
+        columns = chain.velocities[:, freedoms] / length
         if planar:
             columns = columns[:2]
         else:
@@ -66,7 +68,7 @@ def _check_independent(
                 "at least one joint that is not extra",
             )
         values = np.linalg.svd(columns / np.where(sizes > 0, sizes, 1.0), compute_uv=False)
-        if np.min(sizes) == 0.0 or values[-1] < _DEPENDENT:
+        if np.min(sizes) < _DEPENDENT * np.max(sizes) or values[-1] < _DEPENDENT:
             raise SpecError(
                 manipulator.name,
                 f"legs[{index}]",

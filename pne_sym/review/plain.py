@@ -74,6 +74,8 @@ def _scalar(expr: Any) -> _Piece:
         return _power(*expr.args)
     if isinstance(expr, sp.Function):
         return f"{expr.func.__name__}({', '.join(map(plain, expr.args))})", _ATOM
+    if isinstance(expr, sp.Float):
+        return f"{float(expr):g}", _ATOM
     if isinstance(expr, sp.Number):
         return str(expr), _ATOM if expr >= 0 and expr.is_Integer else _PRODUCT
     return str(expr), _ATOM

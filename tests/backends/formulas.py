@@ -15,7 +15,7 @@ import numpy as np
 from pne_sym.backends.glyphs import Glyph
 
 _TOKENS = re.compile(
-    r"(?P<space>\s+|\\,)|(?P<open>\\left\(|\()|(?P<close>\\right\)|\))|(?P<number>\d+)"
+    r"(?P<space>\s+|\\,)|(?P<open>\\left\(|\()|(?P<close>\\right\)|\))|(?P<number>\d+(\.\d+)?)"
     r"|(?P<mark>\\times|\\cdot(?![a-z])|\\lVert|\\rVert|\\frac|\\sqrt|\\widetilde|\\mathrm\{ax\}"
     r"|\\mathrm\{atan2\}|\\sin|\\cos|\\mathbf E(?![a-z])|[-+{}^,])"
 )
@@ -136,7 +136,7 @@ class Reader:
         token = self._take()
         if token in self.known:
             return self.known[token]
-        if token.isdigit():
+        if token[:1].isdigit():
             return float(token)
         if token in ("(", r"\left("):
             value = self._sum()

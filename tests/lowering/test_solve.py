@@ -104,6 +104,43 @@ def test_dependent_screws_are_noticed(n: int, across: bool) -> None:
         assert {g.trouble for g in b.guards} == {"singular"}
 
 
+@pytest.mark.parametrize("pattern", ["dense", "single entries"])
+@pytest.mark.parametrize("n", [3, 4, 5])
+@pytest.mark.parametrize("across", [False, True])
+def test_what_is_singular_does_not_depend_on_the_unit_of_length(
+    n: int, across: bool, pattern: str
+) -> None:
+    """Velocities in the first rows, angles in the last two: sizes and weights are lengths."""
+    matrix = np.random.default_rng(n).normal(size=(n, n)) + 2.0 * np.eye(n)
+    if pattern == "single entries":
+        matrix = np.diag(np.diag(matrix))
+        matrix[0, -1] = 0.7
+    ratios = []
+    for unit in (1.0, 1e3):
+        lengths = np.where(np.arange(n) < n - 2, unit, 1.0)
+        b = Builder()
+        length, *entries = inputs(
+            b, {"l": 0.3 * unit, **{f"s{i}": x for i, x in enumerate(np.ravel(matrix))}}
+        )
+        known = {length: 0.3 * unit}
+        rows = []
+        for i in range(n):
+            own = entries[n * i : n * (i + 1)]
+            known |= dict(zip(own, matrix[i] * lengths[i], strict=True))
+            rows.append([e if x else sp.S.Zero for e, x in zip(own, matrix[i], strict=True)])
+        weights = [length if i >= n - 2 else sp.S.One for i in range(n)]
+        screws = Screws(rows, [length] * n, weights, dict.setdefault)
+        one = [sp.S.One] * n
+        if across:
+            solve_transposed(b, screws, one)
+        else:
+            solve(b, screws, one, [""] * n)
+        values = run(b.statements, known)
+        ratios.append([value(g.value, values) / value(g.scale, values) for g in b.guards])
+        assert ratios[-1]
+    assert ratios[0] == pytest.approx(ratios[1], rel=1e-9)
+
+
 def test_rows_of_zeros_are_left_out() -> None:
     b = Builder()
     known = inputs(b, {"s00": 2.0, "s21": 4.0, "r0": 6.0, "r1": 0.0, "r2": 2.0})

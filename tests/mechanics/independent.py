@@ -16,9 +16,11 @@ import numpy as np
 
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
 from tests.mechanics.evaluation import Array, Names
-from tests.oracle.closure import perpendicular_pair
+from tests.oracle.closure import leg_closure, perpendicular_pair
 from tests.oracle.coordinates import is_planar, joint_slices, pose_size, task_size
 from tests.oracle.jets import cross_matrix
+
+_SLIDE = JointKind.PRISMATIC
 
 
 class Facts:
@@ -314,11 +316,49 @@ def _gap(f: Facts, j: int) -> Any:
     return f.point - f.tip
 
 
+@value_of("size_0")
+def _size_at_home(f: Facts, j: int) -> Any:
+    """The largest lever arm of the leg type at home if it slides, else a small part of any."""
+    arms = _arms_at_home(f)
+    info = next(t for t in f.names.derivation.leg_types if f.index in t.indices)
+    own = max(arms[index] for index in info.indices)
+    least = 1e-3 * (max(arms) or 1.0)
+    turning = [j for j, joint in enumerate(f.leg.joints) if joint.kind is not _SLIDE]
+    slides = turning and any(
+        joint.kind is not JointKind.REVOLUTE for joint in f.leg.joints[turning[0] :]
+    )
+    return float(f"{max(own, least) if slides else least:.5e}")
+
+
+def _arms_at_home(f: Facts) -> list[float]:
+    m = f.manipulator
+    X, q = np.array(m.home.X), np.array(m.home.q)
+    found = []
+    for leg, where in zip(m.legs, joint_slices(m), strict=True):
+        columns = leg_closure(m, leg, X, q[where]).joints[: 2 if f.planar else 3]
+        turning = [joint.kind is not _SLIDE for joint in leg.joints]
+        found.append(float(np.linalg.norm(columns[:, turning], axis=0).max(initial=0.0)))
+    return found
+
+
 @value_of("size")
 def _size(f: Facts, j: int) -> Any:
-    vectors = [f.leg.base_point, f.leg.platform_point, f.leg.platform_joint.offset]
-    vectors += [joint.offset for joint in f.leg.joints]
-    return np.sqrt(np.sum(np.square(vectors)))
+    """Offsets beyond the first turning joint, each link's across what its joints slide along."""
+    joints, squared = f.leg.joints, _size_at_home(f, j) ** 2
+    turning = [k for k, joint in enumerate(joints) if joint.kind is not _SLIDE]
+    offsets = [*(joint.offset for joint in joints), f.leg.platform_joint.offset]
+    for first, following in zip(turning, [*turning[1:], len(joints)], strict=True):
+        along = [joint.axis for joint in joints[first + 1 : following]]
+        helical = joints[first].kind is JointKind.HELICAL
+        along += [joints[first].axis] if helical or first == turning[0] else []
+        axes = [a for k, a in enumerate(along) if not _parallel_to_any(a, along[:k])]
+        rows = np.array([np.sum(offsets[first + 1 : following + 1], axis=0), *axes])
+        squared += np.linalg.det(rows @ rows.T) if len(rows) <= 3 else 0.0
+    return np.sqrt(squared + sum(joint.pitch**2 for joint in joints))
+
+
+def _parallel_to_any(axis: Any, others: Any) -> bool:
+    return any(np.linalg.norm(np.cross(axis, other)) < 1e-9 for other in others)
 
 
 @value_of(r"rho_tip_(\d+)")

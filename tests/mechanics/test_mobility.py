@@ -16,6 +16,7 @@ from pne_sym.model.manipulator import Leg, Manipulator
 from tests.oracle.closure import leg_closure
 from tests.oracle.coordinates import joint_slices, twist_basis
 from tests.oracle.mechanisms import mechanism
+from tests.whole.rewriting import Rewriting, drawn_shifts
 
 # freedoms, drives, constraints, extra coordinates, passive ones, cases of section 3
 KNOWN: dict[str, tuple[int, int, int, int, int, tuple[str, ...]]] = {
@@ -35,6 +36,8 @@ KNOWN: dict[str, tuple[int, int, int, int, int, tuple[str, ...]]] = {
     "tripod_3rps": (3, 3, 3, 0, 0, ("3.7",)),
     "tripod_3prs": (3, 3, 3, 0, 0, ("3.7",)),
     "tripod_3upu": (3, 3, 3, 0, 0, ("3.7",)),
+    "tricept": (3, 3, 3, 0, 0, ("3.7",)),
+    "quadrupod": (3, 4, 3, 0, 0, ("3.3", "3.7")),
     "tripod_3ups": (3, 3, 0, 0, 0, ("3.1",)),
     "spherical_3ups": (3, 3, 0, 0, 0, ("3.1",)),
     "delta": (3, 3, 0, 0, 0, ("3.1",)),
@@ -91,6 +94,15 @@ def test_freedoms_by_the_oracle(name: str) -> None:
     values = np.linalg.svd(np.vstack(rows), compute_uv=False)
     freedoms = basis.shape[1] + q.size - int(np.sum(values > 1e-6 * values[0]))
     assert mobility(manipulator).freedoms == freedoms
+
+
+@pytest.mark.parametrize("name", ["tricept", "tripod_3upu", "stewart", "planar_mixed", "delta"])
+def test_far_origins_change_nothing(name: str) -> None:
+    """Ranks are told by lengths of the mechanism, wherever base and platform origins lie."""
+    spec = manipulators.load(name)
+    far = drawn_shifts(spec, np.random.default_rng(0), 300.0, seats=False)
+    far = replace(far, slides=0.0 * far.slides, first_axis=0.0 * far.first_axis)
+    assert mobility(Rewriting(spec, far).after) == mobility(spec)
 
 
 def without_drives(manipulator: Manipulator) -> Manipulator:

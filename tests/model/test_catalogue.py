@@ -24,7 +24,7 @@ def reference(name: str) -> Any:
 
 def test_names() -> None:
     assert list(manipulators.names()) == NAMES
-    assert len(NAMES) == 31
+    assert len(NAMES) == 33
 
 
 @pytest.mark.parametrize("name", NAMES)

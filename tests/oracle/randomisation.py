@@ -302,8 +302,8 @@ def _quality(manipulator: Manipulator, X: Array, q: Array) -> _Quality:
 
 
 def _drive_matrix(state: Result) -> Array:
-    """[H Hk] without the rows that no drive reaches."""
-    both = np.hstack([state.H, state.Hk])
+    """[H Hk], constraints of length one, without the rows that no drive reaches."""
+    both = np.hstack([state.H, state.Hk / np.linalg.norm(state.Hk, axis=0)])
     reach = np.abs(both).max(axis=1)
     return np.delete(both, np.flatnonzero(reach <= 1e-12 * reach.max()), axis=0)
 

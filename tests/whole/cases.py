@@ -95,7 +95,7 @@ def answers(c: Case) -> dict[str, Any]:
     }
     if m.NC:
         Hk = m.Hk(s.X, p, **guess)
-        found["constraint forces"] = Hk * lam
+        found["constraint forces"] = _by_leg(c, Hk, lam)
         found["constraints"] = m.constraints(s.X, p, **guess)
         found["constraint drift"] = Hk.T @ s.A + m.constraint_bias(s.X, s.V, p, **guess)
     return found
@@ -119,10 +119,16 @@ def expected(c: Case) -> dict[str, Any]:
         "A": c.state.A,
     }
     if c.model.NC:
-        found["constraint forces"] = o.Hk * o.lam
+        found["constraint forces"] = _by_leg(c, o.Hk, o.lam)
         found["constraints"] = np.zeros(c.model.NC)
         found["constraint drift"] = np.zeros(c.model.NC)
     return found
+
+
+def _by_leg(c: Case, Hk: Array, lam: Array) -> Array:
+    """What each leg's constraints do on the platform: how a leg splits it is a matter of choice."""
+    ends = np.cumsum([len(leg.constraint_wrenches) for leg in c.oracle.legs])[:-1]
+    return np.array([part.sum(axis=1) for part in np.split(Hk * lam, ends, axis=1)])
 
 
 def _reaction_size(c: Case) -> int:

@@ -45,10 +45,12 @@ def test_inverse_dynamics_undoes_forward_dynamics(name: str) -> None:
     again = m.inverse_dynamics(s.X, s.V, A, p, s.wrench, **c.guess)
     again, lam_again = again if m.NC else (again, np.zeros(0))
     H = m.H(s.X, p, **c.guess)
-    assert relative_error(H @ again, H @ tau) < 1e-9
-    assert relative_error(lam_again, lam) < 1e-9
-    if np.linalg.matrix_rank(H) == m.NU:
+    Hk = m.Hk(s.X, p, **c.guess) if m.NC else np.zeros((m.NV, 0))
+    both = np.hstack([H, Hk])
+    assert relative_error(H @ again + Hk @ lam_again, H @ tau + Hk @ lam) < 1e-9
+    if np.linalg.matrix_rank(both) == m.NU + m.NC:  # else many forces do the same
         assert relative_error(again, tau) < 1e-9
+        assert relative_error(lam_again, lam) < 1e-9
 
 
 @pytest.mark.parametrize("name", FREE)

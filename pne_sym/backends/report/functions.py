@@ -148,7 +148,7 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
     if singular:
         lines.append(
             f"**Singular leg**: a divisor of {_links(singular)} (nearly) zero, measured against "
-            "the size of the leg."
+            "the length of the leg's lever arms."
         )
     constrained = bundle.coordinates.sizes["NC"] > 0
     if any(not info.is_closed for info in bundle.derivation.leg_types):
