@@ -163,10 +163,10 @@ def _call_function(k: int, name: str, c: CCall, states: int) -> Iterator[str]:
     yield "    size_t k;"
     yield from (f"    get(in_{n}, {states * size});" for n, size in taken)
     yield f"    for (k = 0; k < {states}; k++) {{"
-    yield from (f"        forget(out_{n}, {size});" for n, size in c.outputs)
+    yield from (f"        forget(out_{n} + k * {size}, {size});" for n, size in c.outputs)
     arguments = ["&model"] * c.model + _arguments(c, " + k * {size}")
     yield f"        put_one((double){name}_{c.function}({', '.join(arguments)}));"
-    yield from (f"        put(out_{n}, {size});" for n, size in c.outputs)
+    yield from (f"        put(out_{n} + k * {size}, {size});" for n, size in c.outputs)
     yield "    }"
     yield from (f"    forget(out_{n}, {states * size});" for n, size in c.outputs)
     arguments = ["&model"] * c.model + [str(states), *_arguments(c, ""), "status"]
