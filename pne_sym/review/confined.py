@@ -26,7 +26,9 @@ def main() -> None:
     }
     if processes >= 0:
         limits[resource.RLIMIT_NPROC] = processes
-    for kind, limit in limits.items():
+    for kind, wanted in limits.items():
+        hardest = resource.getrlimit(kind)[1]
+        limit = wanted if hardest == resource.RLIM_INFINITY else min(wanted, hardest)
         resource.setrlimit(kind, (limit, limit))
     os.execv(command[0], command)  # noqa: S606 - no shell, as it was given
 

@@ -214,7 +214,12 @@ def _python_folders() -> list[str]:
     folders = dict.fromkeys(
         str(Path(p)) for p in (sys.base_prefix, sys.prefix, executable.parent.parent)
     )
-    return [f for f in folders if f != "/" and not f.startswith("/usr/") and f != "/usr"]
+    home = Path.home()  # what holds it is not shown: then bubblewrap does not work here
+    return [
+        f
+        for f in folders
+        if not home.is_relative_to(f) and not f.startswith("/usr/") and f != "/usr"
+    ]
 
 
 def compiler() -> str | None:
@@ -282,6 +287,8 @@ def _collected(process: subprocess.Popen[bytes], limits: Limits) -> tuple[bytes,
 
 def _has_ended(process: subprocess.Popen[bytes]) -> bool:
     """Whether it has ended; it is not reaped, so that its number stays its own."""
+    if not hasattr(os, "waitid"):  # macOS before Python 3.13
+        return process.poll() is not None
     flags = os.WEXITED | os.WNOHANG | os.WNOWAIT
     return os.waitid(os.P_PID, process.pid, flags) is not None
 

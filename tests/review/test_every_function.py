@@ -11,6 +11,7 @@ import pytest
 from pne_sym.backends.c_api import api_table
 from pne_sym.backends.describe import describe
 from pne_sym.review.c_driver import c_calls
+from pne_sym.review.compare import compare
 from pne_sym.review.difference import Verdict
 from pne_sym.review.model import Model, from_bundle
 from pne_sym.review.values import STATES, Runs
@@ -101,8 +102,6 @@ def test_the_driver_gives_numpys_values(name: str) -> None:
 
 
 def test_a_version_and_itself_is_the_same_in_every_function() -> None:
-    from pne_sym.review.compare import compare
-
     same = compare(model("planar_3rpr"), model("planar_3rpr"), run=True)
     assert same.equal
     assert {b.verdict for b in same.blocks} == {Verdict.IDENTICAL}
