@@ -108,7 +108,8 @@ def _fields(required: Mapping[str, Check], optional: Mapping[str, Check] | None 
 
 
 _pairs = _list(lambda pair: _list(_is_count)(pair) and len(pair) == 2)
-_functions = _map(
+_MOST_FUNCTIONS = 500
+_any_functions = _map(
     _fields(
         {
             "inputs": _map(_is_count, _is_name),
@@ -119,7 +120,10 @@ _functions = _map(
     ),
     _is_name,
 )
-_ENTRIES_OF_2: dict[str, Check] = {"functions": _functions, "specification": _is_table}
+_ENTRIES_OF_2: dict[str, Check] = {
+    "functions": lambda value: _any_functions(value) and len(value) <= _MOST_FUNCTIONS,
+    "specification": _is_table,
+}
 _ENTRIES: dict[str, Check] = {
     "name": _is_name,
     "format": lambda value: _is_count(value) and value in FORMATS,

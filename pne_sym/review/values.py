@@ -69,7 +69,13 @@ class Runs:
         self.sets: tuple[list[Set], list[Set]] = ([], [])
         self.kept: list[Rows] = []
         if self.comparable:
-            self._draw(np.random.default_rng(seed))
+            try:
+                self._draw(np.random.default_rng(seed))
+            except (ValueError, IndexError) as error:  # also of a stranger's manifest
+                if isinstance(error, ExecutionError):
+                    raise
+                labels = f"{before.label}, {after.label}"
+                raise ExecutionError(f"{labels}: parameters of shapes that do not fit") from error
             self.answers = _both(
                 _asked(m, [_request(s) for s in sets])
                 for m, sets in zip(self.models, self.sets, strict=True)
@@ -142,9 +148,9 @@ class Runs:
         """The states of a set that at least one of the two versions allows."""
         allowed = np.zeros(STATES, dtype=bool)
         for answer in self.answers:
-            (M,) = answer.calls[k].get(("M", (), "batch"), [np.full((STATES, 1), np.nan)])
-            if M.shape[:1] == (STATES,):
-                allowed |= np.isfinite(M.reshape(STATES, -1)).all(axis=1)
+            for M in answer.calls[k].get(("M", (), "batch"), ())[:1]:
+                if M.shape[:1] == (STATES,):
+                    allowed |= np.isfinite(M.reshape(STATES, -1)).all(axis=1)
         possible = np.isfinite(self.sets[0][k].values["X"]).all(axis=1)
         return np.flatnonzero(allowed & possible)
 
