@@ -169,7 +169,7 @@ def best_isolation() -> Isolation:
     for isolation in (Isolation.BUBBLEWRAP, Isolation.UNSHARE):
         with contextlib.suppress(SandboxError, OSError), workplace(isolation) as place:
             command = [sys.executable, "-I", "-c", "import numpy; print(numpy.ones(1).sum())"]
-            if place.run(command, Limits(seconds=30)).strip() == b"1.0":
+            if place.run(command, Limits(seconds=60)).strip() == b"1.0":
                 return isolation
     return Isolation.NONE
 
