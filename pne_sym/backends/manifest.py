@@ -9,12 +9,15 @@ from importlib.metadata import version
 from typing import Any
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.c_api import Api, api_table
+from pne_sym.backends.describe import describe
 from pne_sym.derivation import ParameterField
 from pne_sym.model.full_form import to_full_form
 from pne_sym.program.count import count_block, count_expression
 from pne_sym.program.ir import Counts, Function
 
-FORMAT = 1
+FORMAT = 2
+"""1: without `functions` and `specification`."""
 
 
 class ManifestBackend:
@@ -47,6 +50,8 @@ def _manifest(bundle: Bundle) -> dict[str, Any]:
         "operations": {
             name: _operations(f, bundle.leg_counts) for name, f in bundle.program.functions.items()
         },
+        "functions": {a.name: _function(a) for a in api_table(bundle, describe(bundle))},
+        "specification": to_full_form(bundle.manipulator),
         "digests": {"spec": spec_digest(bundle), "derivation": derivation_digest(bundle)},
     }
 
@@ -84,6 +89,16 @@ def _parameter(f: ParameterField) -> dict[str, Any]:
     return entry
 
 
+def _function(a: Api) -> dict[str, Any]:
+    """A public function of the C module: entries of each argument, in order, per state."""
+    return {
+        "inputs": {i.name: i.size for i in a.inputs},
+        "optional": [i.name for i in a.inputs if i.optional],
+        "outputs": {o.name: o.size for o in a.outputs},
+        "model": a.has_model,
+    }
+
+
 def _operations(function: Function, legs: dict[str, int]) -> dict[str, Any]:
     """Counts of a function: in all, of naming the inputs, and per block (one leg each)."""
     unpack = sum((count_expression(a.expr) for a in function.unpack), Counts())
@@ -116,20 +131,29 @@ def _digest(text: str) -> str:
 
 
 def _text(manifest: dict[str, Any]) -> str:
-    """JSON with one line per entry of the second level, so that changes show as small diffs."""
+    """JSON with one line per entry of the second level, so that changes show as small diffs.
+
+    Lists of tables below it (the legs of the specification) have a line per table.
+    """
     lines = ["{"]
     for k, (key, value) in enumerate(manifest.items()):
-        comma = "," if k < len(manifest) - 1 else ""
-        if isinstance(value, dict) and value:
-            lines.append(f"{json.dumps(key)}: {{")
-            inner = [f" {json.dumps(n)}: {json.dumps(v)}" for n, v in value.items()]
-            lines += [line + ("," if i < len(inner) - 1 else "") for i, line in enumerate(inner)]
-            lines.append("}" + comma)
-        elif isinstance(value, list | tuple) and value and isinstance(value[0], dict):
-            lines.append(f"{json.dumps(key)}: [")
-            inner = [f" {json.dumps(v)}" for v in value]
-            lines += [line + ("," if i < len(inner) - 1 else "") for i, line in enumerate(inner)]
-            lines.append("]" + comma)
-        else:
-            lines.append(f"{json.dumps(key)}: {json.dumps(value)}{comma}")
+        lines += _entry(f"{json.dumps(key)}: ", value, 0, last=k == len(manifest) - 1)
     return "\n".join([*lines, "}", ""])
+
+
+def _entry(start: str, value: Any, depth: int, *, last: bool) -> list[str]:
+    """Lines of an entry: taken apart at the first level, and lists of tables at the second."""
+    comma, space = "" if last else ",", " " * depth
+    tables = isinstance(value, list | tuple) and bool(value) and isinstance(value[0], dict)
+    if tables and depth < 2:
+        items = [("", v) for v in value]
+        ends = "[]"
+    elif isinstance(value, dict) and value and not depth:
+        items = [(f"{json.dumps(n)}: ", v) for n, v in value.items()]
+        ends = "{}"
+    else:
+        return [f"{space}{start}{json.dumps(value)}{comma}"]
+    lines = [f"{space}{start}{ends[0]}"]
+    for k, (name, each) in enumerate(items):
+        lines += _entry(name, each, depth + 1, last=k == len(items) - 1)
+    return [*lines, f"{space}{ends[1]}{comma}"]

@@ -1,69 +1,168 @@
-"""Functions of the generated code compared: by their statements, and by value."""
+"""Functions of the generated code compared by what they return."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from pne_sym.review.c_driver import Array, CAnswer, Key
 from pne_sym.review.difference import BlockDifference, Gap, Verdict
+from pne_sym.review.execution import Answer
 from pne_sym.review.measure import gap_between
-from pne_sym.review.model import Model
 
-_PARTS = {"inverse_dynamics": "required", "leg_reactions": "legs", "energy": "potential"}
-_NAMES = {
-    "energy": ("kinetic energy", "potential energy"),
-    "inverse_dynamics": ("inverse_dynamics", "lambda of inverse_dynamics"),
-    "forward_dynamics": ("forward_dynamics", "lambda of forward_dynamics"),
-}
 _FLOORS = {"constraints": 1e3}
 """Residuals vanish: rounding of lengths of some metres is no difference."""
+Calls = Sequence[Mapping[Key, list[Array]]]
 
 
-def compare_blocks(
-    before: Model, after: Model, old: list[Any], new: list[Any], tolerance: float
+@dataclass(frozen=True)
+class Terms:
+    """How functions are compared.
+
+    Attributes:
+        kept: states that count, per set.
+        tolerance: relative.
+        functions: of the manifest, for the names of what they return.
+        actuators: how many there are.
+    """
+
+    kept: Sequence[NDArray[Any]]
+    tolerance: float
+    functions: Mapping[str, Any]
+    actuators: int
+
+    def outputs(self, name: str) -> list[str]:
+        """Names of what a function returns, where the manifest has them."""
+        return list(self.functions.get(name, {}).get("outputs", ()))
+
+
+def numpy_blocks(
+    before: Answer,
+    after: Answer,
+    terms: Terms,
+    same: Callable[[str], bool],
 ) -> Iterator[BlockDifference]:
-    """Every function of the two modules.
+    """Every function that one of the two NumPy modules exports.
 
     Args:
-        before: a version.
-        after: another.
-        old: values by function, per set of parameters.
-        new: likewise.
-        tolerance: relative.
+        before: what a version answers.
+        after: what another answers.
+        terms: how they are compared.
+        same: whether the text of a function is the same.
     """
-    names = dict.fromkeys(n for values in (*old, *new) for n in values)
-    for name in names:
-        a, b = ([values[name] for values in side if name in values] for side in (old, new))
-        same = _statements(before.source, name) == _statements(after.source, name)
-        if not a or not b:
-            yield BlockDifference(name, Verdict.ADDED if b else Verdict.REMOVED)
+    faults = {**before.errors, **after.errors}
+    known = [_names((*a.calls, a.errors)) for a in (before, after)]
+    for name in dict.fromkeys((*known[0], *known[1])):
+        there = [name in names for names in known]
+        reasons = [f"{why}{_with(k[1])}" for k, why in faults.items() if k[0] == name]
+        if not all(there):
+            yield BlockDifference(name, Verdict.ADDED if there[1] else Verdict.REMOVED)
+        elif reasons:
+            yield BlockDifference(name, Verdict.NOT_COMPARED, note=reasons[0])
+        else:
+            compared = _Function(name, terms.outputs(name), terms)
+            yield compared.difference(name, before.calls, after.calls, same=same(name))
+
+
+def c_blocks(before: CAnswer, after: CAnswer, terms: Terms) -> Iterator[BlockDifference]:
+    """Every function of the two C modules, their sizes, home and defaults."""
+    for what, old, new in (
+        ("sizes", before.sizes, after.sizes),
+        ("home", before.home, after.home),
+    ):
+        gap = gap_between(old[None], new[None])
+        if gap is not None:
+            yield BlockDifference(f"C: {what}", Verdict.DIFFERENT, gap)
+    for name in before.defaults:
+        if name not in after.defaults:
             continue
-        for k in range(max(len(a[0]), len(b[0]))):
-            label = _NAMES.get(name, (name,) * 2)[min(k, 1)]
-            if k >= len(a[0]) or k >= len(b[0]):
-                yield BlockDifference(label, Verdict.ADDED if k < len(b[0]) else Verdict.REMOVED)
+        gap = gap_between(before.defaults[name][None], after.defaults[name][None])
+        if gap is not None:
+            yield BlockDifference(f"C: default of {name}", Verdict.DIFFERENT, gap)
+    known = [_names(a.calls) for a in (before, after)]
+    for name in dict.fromkeys((*known[0], *known[1])):
+        there = [name in names for names in known]
+        if not all(there):
+            yield BlockDifference(f"C: {name}", Verdict.ADDED if there[1] else Verdict.REMOVED)
+            continue
+        labels = [*terms.outputs(name), "status", "failures"]
+        compared = _Function(name, labels, terms)
+        yield compared.difference(f"C: {name}", before.calls, after.calls, same=False)
+
+
+def _names(tables: Iterable[Mapping[Any, Any]]) -> list[str]:
+    """Functions of calls, in order."""
+    return list(dict.fromkeys(key[0] for each in tables for key in each))
+
+
+class _Function:
+    """Compares what a function returns."""
+
+    def __init__(self, name: str, labels: list[str], terms: Terms) -> None:
+        self.name, self.labels, self.terms = name, labels, terms
+
+    def difference(self, title: str, before: Calls, after: Calls, *, same: bool) -> BlockDifference:
+        """The verdict, with the largest difference over all calls and outputs."""
+        own = [
+            dict.fromkeys(k for each in calls for k in each if k[0] == self.name)
+            for calls in (before, after)
+        ]
+        if own[0].keys() != own[1].keys():
+            given = sorted({n for k in own[0].keys() ^ own[1].keys() for n in k[1]})
+            note = f"only one takes {', '.join(given)}"
+            return BlockDifference(title, Verdict.DIFFERENT, note=note)
+        if not sum(map(len, self.terms.kept)):
+            verdict = Verdict.IDENTICAL if same else Verdict.NOT_COMPARED
+            return BlockDifference(title, verdict, note="no state is possible")
+        gaps = [gap for key in own[0] for gap in self._gaps(key, before, after)]
+        worst = max(gaps, key=lambda g: g.size, default=None)
+        if worst is not None and worst.size > self.terms.tolerance:
+            return BlockDifference(title, Verdict.DIFFERENT, worst)
+        return BlockDifference(title, Verdict.IDENTICAL if same else Verdict.EQUAL, worst)
+
+    def _gaps(self, key: Key, before: Calls, after: Calls) -> Iterator[Gap]:
+        sides = [[each[key] for each in calls if key in each] for calls in (before, after)]
+        counts = {len(outputs) for side in sides for outputs in side}
+        if len(counts) != 1 or len(sides[0]) != len(sides[1]):
+            yield Gap(np.inf, "shapes of what is returned", 0.0, 0.0)
+            return
+        for k in range(counts.pop()):
+            a, b = ([self._kept(i, o[k]) for i, o in enumerate(side)] for side in sides)
+            shapes = {x.shape[1:] for x in (*a, *b)}
+            if len(shapes) != 1:
+                yield Gap(np.inf, f"shapes {', '.join(map(str, sorted(shapes)))}", 0.0, 0.0)
                 continue
-            gap = _gap([v[k] for v in a], [v[k] for v in b], _FLOORS.get(name, 0.0))
-            yield BlockDifference(label, *_verdict(gap, tolerance, same=same))
+            floor = _FLOORS.get(self.name, 0.0)
+            gap = gap_between(np.concatenate(a), np.concatenate(b), floor=floor)
+            if gap is not None:
+                yield self._placed(gap, key, k)
+
+    def _kept(self, k: int, value: Array) -> Array:
+        """The states that count; of a basis what does not depend on its choice."""
+        wanted = self.terms.kept[k]
+        if value.ndim == 0 or len(value) <= max(wanted, default=-1):
+            return np.full((1, 0, *value.shape), np.nan)
+        rows: Array = value[wanted]
+        actuators = max(1, self.terms.actuators)
+        columns, odd = divmod(math.prod(rows.shape[1:]), actuators)
+        if self.name == "null_space" and columns and not odd:
+            basis = rows.reshape(len(rows), actuators, columns)
+            rows = np.matmul(basis, np.swapaxes(basis, -1, -2))
+        return rows
+
+    def _placed(self, gap: Gap, key: Key, k: int) -> Gap:
+        """The difference with the output and the call it is of."""
+        several = len(self.labels) > 1
+        of = f" of {self.labels[k]}" if several and k < len(self.labels) else ""
+        how = ", states one by one" if key[2] == "single" else ""
+        where = f"{gap.where}{of}{_with(key[1])}{how}"
+        return Gap(gap.size, where, gap.before, gap.after)
 
 
-def _gap(a: list[Any], b: list[Any], floor: float) -> Gap | None:
-    return gap_between(np.concatenate(a), np.concatenate(b), floor=floor)
-
-
-def _verdict(gap: Gap | None, tolerance: float, *, same: bool) -> tuple[Verdict, Gap | None]:
-    if gap is not None and gap.size > tolerance:
-        return Verdict.DIFFERENT, gap
-    return (Verdict.IDENTICAL if same else Verdict.EQUAL), gap
-
-
-def _statements(source: str, name: str) -> list[str]:
-    """Straight-line code of a function and its preparation, without comments."""
-    part = _PARTS.get(name, name)
-    wanted = re.compile(rf"def _{part}_(?:before|after|[a-z0-9_]+)\(|def _prepare\(")
-    chunks = [c for c in re.split(r"\n(?=\S)", source) if wanted.match(c)]
-    lines = [line.strip() for chunk in chunks or [source] for line in chunk.split("\n")]
-    return [line for line in lines if line and not line.startswith("#")]
+def _with(given: Sequence[str]) -> str:
+    return f" with {', '.join(given)}" if given else ""

@@ -10,150 +10,200 @@ True
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from pne_sym.review.blocks import compare_blocks
-from pne_sym.review.difference import BlockDifference, Comparison, EquationDifference, Verdict
-from pne_sym.review.equations import DerivationComparer, Sample
-from pne_sym.review.execution import execute
+from pne_sym.backends.describe import Described, describe
+from pne_sym.review.blocks import Terms, c_blocks, numpy_blocks
+from pne_sym.review.difference import (
+    BlockDifference,
+    Change,
+    Comparison,
+    Deviation,
+    EquationDifference,
+    Verdict,
+)
+from pne_sym.review.equations import DerivationComparer
+from pne_sym.review.execution import ExecutionError
+from pne_sym.review.files import differing, file_differences
 from pne_sym.review.interface import interface_changes, operation_changes
-from pne_sym.review.model import Model, by_name, by_path, printed_equations, report_of
-from pne_sym.review.samples import length_of, random_parameters, random_states
+from pne_sym.review.model import Model, printed_equations
+from pne_sym.review.reproduction import reproduced
+from pne_sym.review.sandbox import best_isolation
+from pne_sym.review.values import Runs
 from pne_sym.review.written import as_written
+from pne_sym.writer import generated_names
 
 TOLERANCE = 1e-9
-PARAMETER_SETS = 4
-STATES = 8
-_PER_SET = 2
-"""States of each parameter set at which every equation is evaluated."""
 
 
 def compare(
-    before: Model, after: Model, *, tolerance: float = TOLERANCE, seed: int = 0
+    before: Model,
+    after: Model,
+    *,
+    tolerance: float = TOLERANCE,
+    seed: int = 0,
+    run: bool = False,
 ) -> Comparison:
     """Compare two versions of a model.
+
+    Folders that are equal to the byte are identical. Otherwise a folder is compared with
+    what this pne-gen prints from the specification in its manifest; where the two are
+    equal, our own text in memory is run in its place. Nothing else of a folder is
+    executed or compiled, unless that is asked for.
 
     Args:
         before: a version.
         after: another.
         tolerance: relative; values nearer than this are equal.
         seed: of the random parameters and states.
-
-    Raises:
-        ExecutionError: a generated module cannot be run.
+        run: execute the NumPy modules, and compile and execute the C, of both.
     """
-    runs = _Runs(before, after, seed)
+    found = Comparison(before.label, after.label, tolerance, (0, 0), (), (), (), ())
+    changed: list[str] = []
+    if before.folder is not None or after.folder is not None:
+        changed = differing(before.files, after.files)
+        same = len(before.files.keys() | after.files.keys()) - len(changed)
+        found = replace(found, identical_files=same)
+        if not set(changed) & _generated(before, after):
+            return replace(found, files=file_differences(before.files, after.files, ()))
+        before, after = reproduced(before), reproduced(after)
+    ours = before.bundle is not None and after.bundle is not None
+    if changed:
+        accounted = _generated(before, after) if ours else ()
+        found = replace(found, files=file_differences(before.files, after.files, accounted))
+    found = replace(
+        found,
+        deviations=(*before.deviations, *after.deviations),
+        operations=tuple(operation_changes(before, after)),
+    )
+    if ours or run:
+        try:
+            return _with_values(found, before, after, seed, run=run)
+        except ExecutionError as error:
+            found = replace(found, not_compared=str(error))
+    else:
+        found = replace(found, not_compared=_reason(found.deviations))
+    return replace(
+        found,
+        equations=tuple(_compare_reports(before.report, after.report)),
+        interface=tuple(interface_changes(before, after, {}, {})),
+        notes=tuple(_notes(before, after, run=run)),
+    )
+
+
+def _generated(before: Model, after: Model) -> frozenset[str]:
+    """The names of files that this pne-gen prints."""
+    names = generated_names(before.name) | generated_names(after.name)
+    return names | {p for m in (before, after) if m.folder is None for p in m.files}
+
+
+def _reason(deviations: tuple[Deviation, ...]) -> str:
+    versions = " and ".join(dict.fromkeys(d.version for d in deviations))
+    return (
+        f"{versions}: not what this pne-gen prints from the manifest, and nothing of a folder "
+        "is executed without --run"
+    )
+
+
+def _with_values(
+    found: Comparison, before: Model, after: Model, seed: int, *, run: bool
+) -> Comparison:
+    """The comparison with everything that is found by running both versions."""
+    runs = Runs(before, after, seed)
     equations: tuple[EquationDifference, ...]
     if before.bundle and after.bundle and runs.comparable:
-        comparer = DerivationComparer(
-            before.bundle.derivation, after.bundle.derivation, runs.samples(), tolerance
-        )
-        equations = comparer.compare()
+        equations = DerivationComparer(
+            before.bundle.derivation, after.bundle.derivation, runs.samples(), found.tolerance
+        ).compare()
     else:
-        equations = tuple(_compare_reports(report_of(before), report_of(after)))
-    blocks = tuple(compare_blocks(before, after, runs.old, runs.new, tolerance))
-    found = Comparison(
-        before.label,
-        after.label,
-        tolerance,
-        (PARAMETER_SETS, runs.states),
-        blocks if runs.comparable else (BlockDifference("all functions", Verdict.DIFFERENT),),
-        equations,
-        as_written(
-            interface_changes(before, after, runs.old_defaults, runs.new_defaults),
-            before.written,
-            after.written,
-        ),
-        tuple(operation_changes(before, after)),
+        equations = tuple(_compare_reports(before.report, after.report))
+    interface = as_written(
+        interface_changes(before, after, *runs.defaults), before.written, after.written
     )
-    return replace(found, notes=tuple(_notes(before, after, found, runs)))
+    found = replace(
+        found,
+        samples=(len(runs.kept), runs.states),
+        blocks=tuple(_blocks(before, after, runs, found.tolerance, run=run)),
+        equations=equations,
+        interface=(*interface, *_constants(before, after, runs)),
+    )
+    notes = [*_notes(before, after, run=run), *_notes_of_values(before, after, found, runs)]
+    return replace(found, notes=tuple(notes))
 
 
-class _Runs:
-    """Both modules run at common parameters and states.
+def _blocks(
+    before: Model, after: Model, runs: Runs, tolerance: float, *, run: bool
+) -> Iterator[BlockDifference]:
+    """All functions of the NumPy modules, and of C where the code of folders is run."""
+    if not runs.comparable:
+        yield BlockDifference("all functions", Verdict.DIFFERENT)
+        return
+    actuators = before.manifest["sizes"]["NU"]
+    terms = Terms(runs.kept, tolerance, {**after.functions, **before.functions}, actuators)
+    same = _SameText(before, after)
+    yield from numpy_blocks(*runs.answers, terms, same)
+    if run and before.c == after.c:
+        yield BlockDifference("C: all functions", Verdict.IDENTICAL)
+    elif run:
+        answers, faults = runs.c_answers()
+        yield from (BlockDifference("C", Verdict.NOT_COMPARED, note=fault) for fault in faults)
+        if answers is not None:
+            yield from c_blocks(*answers, terms)
 
-    Attributes:
-        old, new: values by function, per set of parameters; states that neither
-            version allows are left out.
-        states: how many states were compared.
-        comparable: whether X and V mean the same in both.
+
+class _SameText:
+    """Whether the text of a function is the same in both NumPy modules.
+
+    Of whole modules, or of our own texts also of functions that are printed from equal
+    statements; nothing is looked for in the text itself.
     """
 
-    def __init__(self, before: Model, after: Model, seed: int) -> None:
-        self.before, self.after = before, after
-        sizes = [m.manifest["sizes"] for m in (before, after)]
-        self.comparable = all(sizes[0][k] == sizes[1][k] for k in ("NQ", "NV"))
-        first = [execute(m.label, m.source, []) for m in (before, after)]
-        self.old_defaults = by_path(before, first[0]["defaults"])
-        self.new_defaults = by_path(after, first[1]["defaults"])
-        self.old: list[Any] = []
-        self.new: list[Any] = []
-        self.states = 0
-        self._parameters: list[tuple[dict[str, Any], dict[str, Any]]] = []
-        self._states: list[dict[str, Any]] = []
-        if self.comparable:
-            self._run(np.random.default_rng(seed))
+    def __init__(self, before: Model, after: Model) -> None:
+        self.whole = before.python == after.python
+        self.before, self.after = before.bundle, after.bundle
+        if self.before is not None and self.after is not None:
+            facts = [self._facts(describe(b)) for b in (self.before, self.after)]
+            programs = [b.program for b in (self.before, self.after)]
+            self.whole |= facts[0] == facts[1] and programs[0] == programs[1]
 
-    def _run(self, rng: np.random.Generator) -> None:
-        defaults = {**self.new_defaults, **self.old_defaults}
-        size, requests = length_of(defaults), []
-        for _ in range(PARAMETER_SETS):
-            drawn = random_parameters(defaults, rng)
-            old = {**drawn, **self._structural(self.new_defaults, drawn)}
-            self._parameters.append((by_name(self.before, drawn), by_name(self.after, old)))
-            states = random_states(self.before, STATES, size, rng)
-            requests.append({**states, "consistent": True, "parameters": self._parameters[-1][0]})
-        answers = execute(self.before.label, self.before.source, requests)["sets"]
-        for request, answer, (_, parameters) in zip(
-            requests, answers, self._parameters, strict=True
-        ):
-            request.update({k: answer[k] for k in ("X", "V", "A")})
-            request.update(consistent=False, parameters=parameters, tau=self._tau(request["tau"]))
-        others = execute(self.after.label, self.after.source, requests)["sets"]
-        for request, answer, other in zip(requests, answers, others, strict=True):
-            self._keep(request, answer["values"], other["values"])
+    @staticmethod
+    def _facts(d: Described) -> Described:
+        return replace(d, name="", upper="", title="")
 
-    def _structural(self, new: dict[str, Any], drawn: dict[str, Any]) -> dict[str, Any]:
-        """Entries that are zero before by structure, but free after, at their values after."""
-        free = {}
-        for path, value in new.items():
-            old = self.old_defaults.get(path)
-            if old is not None and np.shape(value) and np.any((old == 0.0) & (value != 0.0)):
-                free[path] = np.where((old == 0.0) & (value != 0.0), value, drawn[path])
-        return free
-
-    def _tau(self, tau: list[list[float]]) -> list[list[float]]:
-        """Drive forces for as many drives as the version after has."""
-        wanted = self.after.manifest["sizes"]["NU"]
-        return [(row + [0.0] * wanted)[:wanted] for row in tau]
-
-    def _keep(self, request: dict[str, Any], old: dict[str, Any], new: dict[str, Any]) -> None:
-        """Keep the states that one of the two versions allows."""
-        possible = np.isfinite(np.array(request["X"], dtype=float)).all(axis=1)
-        reached = [
-            np.isfinite(np.array(values["M"][0], dtype=float)).all(axis=(1, 2))
-            for values in (old, new)
-        ]
-        kept = np.flatnonzero(possible & (reached[0] | reached[1]))
-        self.states += len(kept)
-        for values, side in ((old, self.old), (new, self.new)):
-            side.append({n: [np.array(v)[kept] for v in each] for n, each in values.items()})
-        both = [int(k) for k in kept if reached[0][k] and reached[1][k]][:_PER_SET]
-        self._states.append(
-            {n: np.array(request[n])[both] for n in ("X", "V", "A")}
-            | {"q": np.array(old["inverse_kinematics"][0])[both]}
+    def __call__(self, name: str) -> bool:
+        if self.whole or self.before is None or self.after is None:
+            return self.whole
+        old, new = self.before.program, self.after.program
+        return (
+            name in old.functions
+            and old.functions[name] == new.functions.get(name)
+            and (old.prepare, old.shapes) == (new.prepare, new.shapes)
         )
 
-    def samples(self) -> list[Sample]:
-        """States for comparing equations: possible in both versions."""
-        return [
-            Sample(old, new, {name: rows[k] for name, rows in states.items()})
-            for (old, new), states in zip(self._parameters, self._states, strict=True)
-            for k in range(len(states["X"]))
-        ]
+
+def _constants(before: Model, after: Model, runs: Runs) -> Iterator[Change]:
+    """What the modules export besides functions, where that is not what their manifests say."""
+    old, new = (a.constants for a in runs.answers)
+    stated = [{**m.manifest["sizes"], **_home(m)} for m in (before, after)]
+    for name in dict.fromkeys((*old, *new)):
+        if name not in old or name not in new:
+            yield Change("added" if name in new else "removed", f"constant {name}")
+        elif not np.array_equal(old[name], new[name]) and not all(
+            np.array_equal(np.asarray(side.get(name)), values[name])
+            for side, values in zip(stated, (old, new), strict=True)
+        ):
+            yield Change("changed", f"constant {name}", _text(old[name]), _text(new[name]))
+
+
+def _home(model: Model) -> dict[str, list[float]]:
+    return {"HOME_X": model.manifest["home"]["X"], "HOME_Q": model.manifest["home"]["q"]}
+
+
+def _text(value: object) -> str:
+    return str(np.asarray(value).tolist())[:200]
 
 
 def _compare_reports(before: str, after: str) -> list[EquationDifference]:
@@ -183,22 +233,32 @@ def _compare_reports(before: str, after: str) -> list[EquationDifference]:
     return found
 
 
-def _notes(before: Model, after: Model, found: Comparison, runs: _Runs) -> list[str]:
-    """What a reader should know of how far the comparison goes."""
-    notes = []
+def _notes(before: Model, after: Model, *, run: bool) -> Iterator[str]:
+    """What a reader should know of the two versions."""
     for key in ("name", "title", "generator"):
         a, b = before.manifest.get(key), after.manifest.get(key)
         if a != b:
-            notes.append(f"{key}: {a} -> {b}")
+            yield f"{key}: {a} -> {b}"
+    if before.bundle is None or after.bundle is None:
+        yield "equations, interface and operations are compared as the folders print them"
+    for model in (before, after) if run else ():
+        if model.bundle is None:
+            yield (
+                f"{model.label}: its code was executed, and values are by its own account; "
+                f"isolation: {best_isolation()}"
+            )
+
+
+def _notes_of_values(before: Model, after: Model, found: Comparison, runs: Runs) -> Iterator[str]:
+    """How far the comparison of values goes."""
     if not runs.comparable:
-        notes.append("X or V have other entries: values cannot be compared")
+        yield "X or V have other entries: values cannot be compared"
     elif not runs.states:
-        notes.append("no state was found that either version allows: values were not compared")
-    if not (before.bundle and after.bundle):
-        notes.append(
-            "equations are compared as the reports print them, values function by function: "
-            "one of the two is a generated folder"
-        )
-    elif any(b.verdict is Verdict.DIFFERENT for b in found.blocks) and not found.origins:
-        notes.append("all equations agree: what differs is outside them (lowering, branches, home)")
-    return notes
+        yield "no state was found that either version allows: values were not compared"
+    if (
+        before.bundle is not None
+        and after.bundle is not None
+        and any(b.verdict is Verdict.DIFFERENT for b in found.blocks)
+        and not found.origins
+    ):
+        yield "all equations agree: what differs is outside them (lowering, branches, home)"

@@ -23,13 +23,16 @@ def as_text(found: Comparison) -> Iterator[str]:
     yield f"+++ {found.after}"
     yield verdict(found)
     yield measured(found)
-    yield ""
-    yield "blocks"
+    yield from _files(found)
+    if found.blocks:
+        yield ""
+        yield "blocks"
     width = max((len(b.name) for b in found.blocks), default=0)
     for block in found.blocks:
         yield f"  {block.name:<{width}}  {_told(block)}"
-    yield ""
-    yield from _summary(found)
+    if found.equations:
+        yield ""
+        yield from _summary(found)
     yield from _equations(found)
     if found.interface:
         yield ""
@@ -49,28 +52,57 @@ def as_text(found: Comparison) -> Iterator[str]:
 def verdict(found: Comparison) -> str:
     """The answer in one line."""
     if not found.equal:
+        if found.not_compared:
+            return "different: not all is compared"
         if found.origins:
             first = found.origins[0]
             return f"different: first at {first.id} ({first.name}), {first.title}"
-        if all(b.verdict in (Verdict.IDENTICAL, Verdict.EQUAL) for b in found.blocks):
-            return "different: equal values at equal parameters, but the interface changed"
-        return "different"
+        if any(b.verdict not in (Verdict.IDENTICAL, Verdict.EQUAL) for b in found.blocks):
+            return "different"
+        if any(not f.accounted for f in found.files):
+            return "different: files differ whose text no comparison of values accounts for"
+        return "different: equal values at equal parameters, but the interface changed"
     verdicts = {b.verdict for b in found.blocks} | {e.verdict for e in found.equations}
-    same = verdicts <= {Verdict.IDENTICAL}
+    same = verdicts <= {Verdict.IDENTICAL} and not found.files
     return "equal: identical text" if same else "equal: different text, the same values"
 
 
 def measured(found: Comparison) -> str:
     """At how many places values were compared, and how closely."""
     sets, states = found.samples
+    if found.not_compared:
+        return f"values not compared: {found.not_compared}"
+    if not sets and found.identical_files:
+        return f"{found.identical_files} files are equal to the byte; nothing was derived or run"
     return (
         f"values compared at {states} states of {sets} parameter sets, "
         f"tolerance {found.tolerance:g} relative"
     )
 
 
+def _files(found: Comparison) -> Iterator[str]:
+    """Files that differ, then where folders are not what this pne-gen prints."""
+    if found.files:
+        yield ""
+        yield f"files ({found.identical_files} others are equal to the byte)"
+    for f in found.files:
+        how = "printed by this pne-gen on both sides" if f.accounted else "counts as different"
+        yield f"  {f.path}: differs, {f.where} ({how})"
+        if not f.accounted:
+            yield from _before_after(f.before, f.after)
+    if found.deviations:
+        yield ""
+        yield "not what this pne-gen prints from the manifest's specification"
+    for d in found.deviations:
+        yield f"  {d.version}: {d.path}{', ' if d.path else ''}{d.where}"
+        if d.printed or d.found:
+            yield f"    printed: {d.printed.strip()}"
+            yield f"    found:   {d.found.strip()}"
+
+
 def _told(block: BlockDifference) -> str:
-    return str(block.verdict) + (f"; {_gap(block.gap)}" if block.gap else "")
+    gap = f"; {_gap(block.gap)}" if block.gap else ""
+    return f"{block.verdict}{gap}" + (f"; {block.note}" if block.note else "")
 
 
 def _gap(gap: Gap) -> str:
@@ -78,7 +110,7 @@ def _gap(gap: Gap) -> str:
         return (
             gap.where
             if gap.where.startswith(("shapes", "the conditions"))
-            else (f"at {gap.where} only one has a value")
+            else f"at {gap.where} only one has a value"
         )
     return f"largest relative difference {gap.size:.2g} at {gap.where}"
 
@@ -156,14 +188,19 @@ def as_markdown(found: Comparison) -> Iterator[str]:
     mark = "✅" if found.equal else "⚠️"
     yield f"### {mark} {_escaped(verdict(found))}"
     yield ""
-    yield f"{_code(found.before)} → {_code(found.after)}: {measured(found)}."
+    yield f"{_code(found.before)} → {_code(found.after)}: {_escaped(measured(found))}."
     yield ""
-    yield "| Block | Result |"
-    yield "| --- | --- |"
+    files = list(_files(found))
+    if files:
+        yield from _folded("Files", files, is_open=True)
+    if found.blocks:
+        yield "| Block | Result |"
+        yield "| --- | --- |"
     for block in found.blocks:
         yield f"| {_escaped(block.name)} | {_escaped(_told(block))} |"
     yield ""
-    yield from (_escaped(line.strip()) + "  " for line in list(_summary(found))[1:])
+    if found.equations:
+        yield from (_escaped(line.strip()) + "  " for line in list(_summary(found))[1:])
     if found.interface:
         yield ""
         yield "**Interface**"
@@ -183,10 +220,10 @@ def as_markdown(found: Comparison) -> Iterator[str]:
         yield f"> {_escaped(note)}"
 
 
-def _folded(title: str, lines: list[str]) -> Iterator[str]:
+def _folded(title: str, lines: list[str], *, is_open: bool = False) -> Iterator[str]:
     fence = "`" * max(4, *(len(run) + 1 for line in lines for run in _ticks(line)))
     yield ""
-    yield f"<details><summary>{title}</summary>"
+    yield f"<details{' open' if is_open else ''}><summary>{title}</summary>"
     yield ""
     yield f"{fence}diff"
     yield from lines

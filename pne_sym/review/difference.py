@@ -17,6 +17,7 @@ class Verdict(enum.StrEnum):
     CHANGED = "different text"
     ADDED = "added"
     REMOVED = "removed"
+    NOT_COMPARED = "not compared"
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,43 @@ class OperationChange:
 
 
 @dataclass(frozen=True)
+class FileDifference:
+    """A file that is not the same in both versions, to the byte.
+
+    Attributes:
+        path: below the folder.
+        where: "line 12", "only after" ...
+        before, after: the first lines that differ, shortened.
+        accounted: both texts are what this pne-gen prints from the specifications that are
+            compared; of any other file the difference counts.
+    """
+
+    path: str
+    where: str
+    before: str = ""
+    after: str = ""
+    accounted: bool = False
+
+
+@dataclass(frozen=True)
+class Deviation:
+    """Where a folder is not what this pne-gen prints from its own manifest.
+
+    Attributes:
+        version: what the user called the folder.
+        path: a file; empty where the reason is not in one.
+        where: "line 12", or the reason.
+        printed, found: the first lines that differ, shortened.
+    """
+
+    version: str
+    path: str
+    where: str
+    printed: str = ""
+    found: str = ""
+
+
+@dataclass(frozen=True)
 class Comparison:
     """Two versions of a model compared.
 
@@ -111,6 +149,10 @@ class Comparison:
         interface: parameters, coordinates and defaults that changed.
         operations: counts that changed.
         notes: what limits the comparison.
+        files: those of generated folders that differ.
+        identical_files: how many are equal to the byte.
+        deviations: where the folders are not what this pne-gen prints.
+        not_compared: why values were not compared; empty where they were, or need not be.
     """
 
     before: str
@@ -122,13 +164,22 @@ class Comparison:
     interface: tuple[Change, ...]
     operations: tuple[OperationChange, ...]
     notes: tuple[str, ...] = ()
+    files: tuple[FileDifference, ...] = ()
+    identical_files: int = 0
+    deviations: tuple[Deviation, ...] = ()
+    not_compared: str = ""
 
     @property
     def equal(self) -> bool:
-        """Whether values and interface are the same; texts need not be."""
-        bad = (Verdict.DIFFERENT, Verdict.ADDED, Verdict.REMOVED)
+        """Whether all was compared, and values and interface are the same.
+
+        Texts need not be, where both are this pne-gen's own.
+        """
+        bad = (Verdict.DIFFERENT, Verdict.ADDED, Verdict.REMOVED, Verdict.NOT_COMPARED)
         return (
-            not self.interface
+            not self.not_compared
+            and all(f.accounted for f in self.files)
+            and not self.interface
             and not any(b.verdict in bad for b in self.blocks)
             and not any(e.verdict is Verdict.DIFFERENT for e in self.equations)
         )
@@ -157,6 +208,10 @@ class Comparison:
                 for o in self.operations
             ],
             "notes": list(self.notes),
+            "files": [_plain(f) for f in self.files],
+            "identical_files": self.identical_files,
+            "deviations": [_plain(d) for d in self.deviations],
+            "not_compared": self.not_compared,
         }
 
 

@@ -1,59 +1,224 @@
-"""Calling a generated NumPy module in a separate process with a time limit.
+"""Calling the code of a folder, or our own text, in confined processes.
 
-The text of the module may come from a folder that the user named: it is run as
-any module of theirs would be on import, but in a process that is isolated from
-the environment (`python -I`, empty working folder) and ended after two minutes.
+Answers are parsed strictly. What a foreign module answers is its own account: nothing
+here takes it for more.
 """
 
 from __future__ import annotations
 
+import base64
 import json
-import subprocess
+import math
 import sys
-import tempfile
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-TIME_LIMIT = 120.0
-"""Seconds that one module may take."""
+import numpy as np
+
+from pne_sym.review.c_driver import Array, CAnswer, CCall, Key, driver_input, driver_text, parsed
+from pne_sym.review.sandbox import Isolation, Limits, SandboxError, compiler, workplace
+
+_MOST_CALLS = 10_000
+_MOST_AXES = 8
+_RUNNER = Path(__file__).with_name("runner.py")
+
+
+_FLAGS = ("-std=c99", "-O0", "-w", "-ffp-contract=off", "-fno-diagnostics-color")
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What a C module is asked.
+
+    Attributes:
+        calls: of which functions.
+        sets: parameters by name (None: defaults), and values of arguments.
+        states: how many there are in every set.
+    """
+
+    calls: tuple[CCall, ...]
+    sets: Sequence[tuple[Mapping[str, Any] | None, Mapping[str, Array]]]
+    states: int
 
 
 class ExecutionError(ValueError):
-    """The module cannot be run; the message is one line for people."""
+    """The code cannot be run, or its answer is not one; the message is one line for people."""
 
 
-def execute(label: str, source: str, sets: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """Defaults of a module's parameters, and its functions' values.
+@dataclass(frozen=True)
+class Answer:
+    """What a module answers, by its own account.
+
+    Attributes:
+        defaults: of the parameters, by name.
+        constants: other exported values; numbers as arrays, else text.
+        states: per set the states that it was asked to make consistent.
+        calls: per set what every call returned.
+        errors: calls that failed, with the reason.
+    """
+
+    defaults: dict[str, Array] = field(default_factory=dict)
+    constants: dict[str, Array | str] = field(default_factory=dict)
+    states: list[dict[str, Array]] = field(default_factory=list)
+    calls: list[dict[Key, list[Array]]] = field(default_factory=list)
+    errors: dict[tuple[str, tuple[str, ...]], str] = field(default_factory=dict)
+
+
+def execute(
+    label: str,
+    model: str,
+    files: Mapping[str, bytes],
+    request: Mapping[str, Any],
+    isolation: Isolation | None,
+) -> Answer:
+    """Import a package and call all of its functions.
 
     Args:
-        label: what to call the module in messages.
-        source: its text.
-        sets: parameters and states, as `runner.py` reads them.
-
-    Returns:
-        `defaults` by name, and per set the state used and the values by function.
+        label: what to call it in messages.
+        model: its name.
+        files: of the package.
+        request: `defaults`, names of parameters; `sets`, as `runner.py` reads them.
+        isolation: None for the best that works here.
 
     Raises:
-        ExecutionError: it fails, or takes too long.
+        ExecutionError: it fails, meets a limit, or does not answer as it should.
     """
-    runner = Path(__file__).with_name("runner.py")
-    request = json.dumps({"source": source, "sets": list(sets)})
     try:
-        with tempfile.TemporaryDirectory() as folder:
-            done = subprocess.run(  # noqa: S603 - our own interpreter and script
-                [sys.executable, "-I", str(runner)],
-                input=request,
-                capture_output=True,
-                text=True,
-                cwd=folder,
-                timeout=TIME_LIMIT,
-                check=False,
+        with workplace(isolation) as place:
+            place.put({f"package/{model}/{name}": text for name, text in files.items()})
+            asked = {**request, "model": model, "folder": f"{place.given}/package"}
+            place.put(
+                {"request.json": json.dumps(asked).encode(), "runner.py": _RUNNER.read_bytes()}
             )
-    except subprocess.TimeoutExpired:
-        raise ExecutionError(f"{label}: its NumPy module took more than {TIME_LIMIT:g} s") from None
-    if done.returncode:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise ExecutionError(f"{label}: its NumPy module cannot be run: {last[:200]}")
-    answer: dict[str, Any] = json.loads(done.stdout)
-    return answer
+            command = [sys.executable, "-I", f"{place.given}/runner.py"]
+            said = place.run([*command, f"{place.given}/request.json"], Limits())
+    except SandboxError as error:
+        raise ExecutionError(f"{label}: its NumPy module cannot be run: {error}") from error
+    try:
+        return _parsed(said, request)
+    except (ValueError, TypeError, KeyError, AttributeError, RecursionError) as error:
+        raise ExecutionError(
+            f"{label}: its NumPy module answers with something else than values"
+        ) from error
+
+
+def packed(value: Any) -> dict[str, Any]:
+    """An array as JSON."""
+    array = np.ascontiguousarray(value, dtype="<f8")
+    return {"shape": list(np.shape(value)), "data": base64.b64encode(array.tobytes()).decode()}
+
+
+def _unpacked(value: Any) -> Array:
+    """An array from JSON; ValueError where it is anything else."""
+    if not isinstance(value, dict) or value.keys() != {"shape", "data"}:
+        raise ValueError("not an array")
+    shape = value["shape"]
+    if not isinstance(shape, list) or len(shape) > _MOST_AXES:
+        raise ValueError("not a shape")
+    if not all(isinstance(n, int) and not isinstance(n, bool) and 0 <= n < 10**6 for n in shape):
+        raise ValueError("not a shape")
+    if not isinstance(value["data"], str):
+        raise ValueError("not data")
+    data = base64.b64decode(value["data"], validate=True)
+    if len(data) != 8 * math.prod(shape):
+        raise ValueError("data of another size")
+    return np.frombuffer(data, dtype="<f8").reshape(shape).astype(np.float64)
+
+
+def _parsed(said: bytes, request: Mapping[str, Any]) -> Answer:
+    """The answer, every part checked."""
+    told = json.loads(said)
+    if not isinstance(told, dict) or told.keys() != {"defaults", "constants", "sets"}:
+        raise ValueError("not an answer")
+    if list(told["defaults"]) != list(request["defaults"]):
+        raise ValueError("defaults of other parameters")
+    found = Answer(
+        {name: _unpacked(v) for name, v in told["defaults"].items()},
+        {_text(name): _constant(v) for name, v in told["constants"].items()},
+    )
+    if not isinstance(told["sets"], list) or len(told["sets"]) != len(request["sets"]):
+        raise ValueError("another number of sets")
+    for each in told["sets"]:
+        if not isinstance(each, dict) or not isinstance(each["calls"], list):
+            raise ValueError("no set")
+        found.states.append({_text(n): _unpacked(v) for n, v in each["values"].items()})
+        found.calls.append(_calls(each["calls"], found.errors))
+    return found
+
+
+def _calls(
+    calls: Sequence[Any], errors: dict[tuple[str, tuple[str, ...]], str]
+) -> dict[Key, list[Array]]:
+    if len(calls) > _MOST_CALLS:
+        raise ValueError("too many calls")
+    found: dict[Key, list[Array]] = {}
+    for call in calls:
+        function, given = _text(call["function"]), tuple(_text(n) for n in call["given"])
+        if "error" in call:
+            errors.setdefault((function, given), _text(call["error"]))
+            continue
+        for mode in ("batch", "single"):
+            if not isinstance(call[mode], list):
+                raise ValueError("no values")
+            found[function, given, mode] = [_unpacked(v) for v in call[mode]]
+    return found
+
+
+def _constant(value: Any) -> Array | str:
+    if isinstance(value, dict) and value.keys() == {"text"}:
+        return _text(value["text"])
+    return _unpacked(value)
+
+
+def _text(value: Any) -> str:
+    """A short text that can be shown."""
+    if not isinstance(value, str):
+        raise TypeError("not a text")
+    return "".join(c if c.isprintable() else "?" for c in value[:300])
+
+
+def execute_c(
+    label: str,
+    files: Mapping[str, bytes],
+    manifest: Mapping[str, Any],
+    asked: Asked,
+    isolation: Isolation | None,
+) -> CAnswer:
+    """Compile a C module with a program that calls all of its functions, and run that.
+
+    Args:
+        label: what to call it in messages.
+        files: header and source, among others.
+        manifest: with the model's name, sizes and parameters.
+        asked: calls, parameters and values.
+        isolation: None for the best that works here.
+
+    Raises:
+        ExecutionError: there is no compiler, or it fails, meets a limit, or does not
+            answer as it should.
+    """
+    cc, name = compiler(), manifest["name"]
+    if cc is None:
+        raise ExecutionError(f"{label}: its C cannot be compiled: no cc, gcc or clang in /usr/bin")
+    sources = {n: files.get(n, b"") for n in (f"{name}.h", f"{name}.c")}
+    driver = driver_text(name, manifest["parameters"], asked.calls, asked.states)
+    given = driver_input(manifest["parameters"], asked.calls, asked.sets)
+    try:
+        with workplace(isolation) as place:
+            place.put({**sources, "driver.c": driver.encode(), "input": given})
+            texts = [f"{place.given}/{n}" for n in ("driver.c", f"{name}.c")]
+            program = f"{place.made}/driver"
+            place.run(
+                [cc, *_FLAGS, f"-I{place.given}", *texts, "-o", program, "-lm"],
+                Limits(processes=True),
+                writes=True,
+            )
+            said = place.run([program, f"{place.given}/input"], Limits())
+    except SandboxError as error:
+        raise ExecutionError(f"{label}: its C cannot be compiled or run: {error}") from error
+    try:
+        return parsed(said, manifest, asked.calls, len(asked.sets), asked.states)
+    except ValueError as error:
+        raise ExecutionError(f"{label}: its C answers with something else: {error}") from error

@@ -31,6 +31,8 @@ def interface_changes(
     for name in ("X", "V", "wrench"):
         a, b = (m.manifest["coordinates"][name] for m in (before, after))
         yield from _changed(f"coordinates {name}", ", ".join(a), ", ".join(b))
+    if before.functions and after.functions:
+        yield from _functions(before.functions, after.functions)
     for key in _PLAIN:
         yield from _changed(key, str(before.manifest.get(key)), str(after.manifest.get(key)))
 
@@ -56,6 +58,25 @@ def _parameters(before: Model, after: Model) -> Iterator[Change]:
         )
     for parameter in free:
         yield Change("removed", f"parameter {parameter['name']}", before=_described(parameter))
+
+
+def _functions(before: dict[str, Any], after: dict[str, Any]) -> Iterator[Change]:
+    """Public functions and their arguments."""
+    for name, function in after.items():
+        if name not in before:
+            yield Change("added", f"function {name}", after=_signature(function))
+        else:
+            yield from _changed(f"function {name}", _signature(before[name]), _signature(function))
+    for name in (n for n in before if n not in after):
+        yield Change("removed", f"function {name}", before=_signature(before[name]))
+
+
+def _signature(function: dict[str, Any]) -> str:
+    sides = [
+        ", ".join(f"{n} ({size})" for n, size in function[side].items())
+        for side in ("inputs", "outputs")
+    ]
+    return f"{sides[0]} -> {sides[1]}"
 
 
 def _partner(parameter: dict[str, Any], among: list[dict[str, Any]]) -> dict[str, Any] | None:
@@ -88,7 +109,7 @@ def _leg_types(before: dict[str, Any], after: dict[str, Any]) -> Iterator[Change
             yield Change("added", f"leg type {name}", after=_leg_type(info))
         else:
             yield from _changed(f"leg type {name}", _leg_type(old[name]), _leg_type(info))
-    for name in old.keys() - new.keys():
+    for name in (n for n in old if n not in new):
         yield Change("removed", f"leg type {name}", before=_leg_type(old[name]))
 
 

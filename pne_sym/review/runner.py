@@ -1,83 +1,145 @@
-"""Runs one generated NumPy module in a process of its own; talks JSON on its two ends.
+"""Runs one generated NumPy package in a process of its own: request file in, JSON out.
 
-The parent (`execution.py`) starts it isolated and with a time limit. It imports
-nothing of this package: what it is given is the text of a module and the
-numbers to call it with.
+The parent (`execution.py`) starts it confined. It imports nothing of pne_sym. What
+is called is what the package exports: every function of `__all__`, with the values
+that the request has for its arguments by name, without the optional ones, with
+each of them, and with all; states one by one and as a batch.
 """
 
 from __future__ import annotations
 
-import contextlib
-import io
+import base64
+import importlib
+import inspect
 import json
+import os
 import sys
-from types import ModuleType
+import warnings
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
-CALLS = {
-    "M": ("X",),
-    "Z": ("X", "V"),
-    "H": ("X",),
-    "Hk": ("X",),
-    "constraints": ("X",),
-    "constraint_bias": ("X", "V"),
-    "inverse_kinematics": ("X",),
-    "joint_rates": ("X", "V"),
-    "joint_accelerations": ("X", "V", "A"),
-    "inverse_dynamics": ("X", "V", "A"),
-    "forward_dynamics": ("X", "V", "tau"),
-    "leg_reactions": ("X", "V", "A"),
-    "energy": ("X", "V"),
-}
+_LONGEST = 300
+_PARAMETERS = "p"
 
 
 def main() -> None:
-    """Read a request, answer it."""
-    request = json.load(sys.stdin)
-    with contextlib.redirect_stdout(io.StringIO()), np.errstate(all="ignore"):
-        module: Any = ModuleType("model")
-        # The user named this folder; the process has no other task and a time limit.
-        exec(compile(request["source"], "<model>", "exec"), module.__dict__)  # noqa: S102
+    """Answer the request in the file named on the command line."""
+    with open(sys.argv[1], encoding="utf-8") as stream:  # noqa: PTH123 - little is imported
+        request = json.load(stream)
+    answer_to = os.dup(1)
+    os.dup2(2, 1)  # what the module prints is no answer
+    sys.path.insert(0, request["folder"])
+    warnings.simplefilter("ignore")
+    with np.errstate(all="ignore"):
+        model: Any = importlib.import_module(request["model"])
         answer = {
-            "defaults": {
-                n: np.asarray(getattr(module.Parameters(), n)).tolist() for n in module._DEFAULTS
-            },
-            "sets": [_run(module, each) for each in request["sets"]],
+            "defaults": {n: _packed(getattr(model.Parameters(), n)) for n in request["defaults"]},
+            "constants": dict(_constants(model)),
+            "sets": [_run(model, each) for each in request["sets"]],
         }
-    json.dump(answer, sys.stdout)
+    with os.fdopen(answer_to, "w") as stream:
+        json.dump(answer, stream)
 
 
-def _run(module: Any, each: dict[str, Any]) -> dict[str, Any]:
-    """States made consistent where asked, and what every function returns there."""
-    p = module.Parameters(**each["parameters"])
-    state = {name: np.array(each[name], dtype=float) for name in ("X", "V", "A", "tau")}
-    if each["consistent"] and hasattr(module, "Hk"):
-        _onto_the_manifold(module, state, p)
-    values = {}
-    for name, arguments in CALLS.items():
-        if hasattr(module, name):
-            values[name] = _lists(getattr(module, name)(*(state[a] for a in arguments), p))
-    return {"values": values, **{name: value.tolist() for name, value in state.items()}}
+def _run(model: Any, each: dict[str, Any]) -> dict[str, Any]:
+    """The states used, made to meet the constraints where asked, and all functions there."""
+    p = None if each["parameters"] is None else model.Parameters(**each["parameters"])
+    values = {n: _unpacked(v) for n, v in each["values"].items()}
+    if each["consistent"]:
+        if hasattr(model, "Hk"):
+            _onto_the_manifold(model, values, p)
+        values["q"] = model.inverse_kinematics(values["X"], p=p)
+        return {"values": {n: _packed(v) for n, v in values.items()}, "calls": []}
+    shared = set(each["shared"])
+    return {"values": {}, "calls": [*_calls(model, values, shared, p)]}
 
 
-def _onto_the_manifold(module: Any, state: dict[str, Any], p: Any) -> None:
+def _constants(model: Any) -> Iterator[tuple[str, Any]]:
+    """What the package exports besides functions and classes."""
+    for name in model.__all__:
+        member = getattr(model, name)
+        if not callable(member):
+            try:
+                yield name, _packed(np.asarray(member, dtype=float))
+            except (TypeError, ValueError):
+                yield name, {"text": repr(member)[:_LONGEST]}
+
+
+def _calls(model: Any, values: dict[str, Any], shared: set[str], p: Any) -> Iterator[Any]:
+    """Every call of every exported function, and what it returns."""
+    for name in model.__all__:
+        function = getattr(model, name)
+        if inspect.isclass(function) or not callable(function):
+            continue
+        needed: list[str] = []
+        offered: list[str] = []
+        for parameter in inspect.signature(function).parameters.values():
+            if parameter.name != _PARAMETERS:
+                free = parameter.default is not parameter.empty
+                (offered if free else needed).append(parameter.name)
+        for given in _choices(offered):
+            yield {"function": name, "given": given, **_call(function, [*needed, *given], values,
+                                                             shared, p)}  # fmt: skip
+
+
+def _choices(offered: list[str]) -> list[list[str]]:
+    """None of the optional arguments, each of them, all of them."""
+    found = [[], *([n] for n in offered)]
+    return [*found, offered] if len(offered) > 1 else found
+
+
+def _call(
+    function: Any, names: list[str], values: dict[str, Any], shared: set[str], p: Any
+) -> dict[str, Any]:
+    """What a function returns for a batch of states, and for them one by one."""
+    unknown = [n for n in names if n not in values]
+    if unknown:
+        return {"error": f"no value is known for its argument {unknown[0]}"}
+    more = {_PARAMETERS: p} if _PARAMETERS in inspect.signature(function).parameters else {}
+    arguments = {n: values[n] for n in names}
+    count = len(values["X"])
+    try:
+        batch = _tuple(function(**arguments, **more))
+        rows = [
+            _tuple(
+                function(**{n: v if n in shared else v[k] for n, v in arguments.items()}, **more)
+            )
+            for k in range(count)
+        ]
+        single = [np.stack([np.asarray(v) for v in each]) for each in zip(*rows, strict=True)]
+        return {"batch": [_packed(v) for v in batch], "single": [_packed(v) for v in single]}
+    except Exception as error:  # noqa: BLE001 - whatever it is, the parent is told
+        return {"error": f"{type(error).__name__}: {error}"[:_LONGEST]}
+
+
+def _tuple(value: Any) -> tuple[Any, ...]:
+    return value if isinstance(value, tuple) else (value,)
+
+
+def _packed(value: Any) -> dict[str, Any]:
+    array = np.ascontiguousarray(value, dtype="<f8")
+    shape = np.shape(value)
+    return {"shape": list(shape), "data": base64.b64encode(array.tobytes()).decode()}
+
+
+def _unpacked(value: dict[str, Any]) -> Any:
+    data = base64.b64decode(value["data"])
+    return np.frombuffer(data, dtype="<f8").reshape(value["shape"]).copy()
+
+
+def _onto_the_manifold(model: Any, state: dict[str, Any], p: Any) -> None:
     """Pose, velocity and acceleration that the constraints allow."""
-    state["X"] = X = module.project(state["X"], p)
-    rows = np.swapaxes(module.Hk(X, p), -1, -2)
+    state["X"] = X = model.project(state["X"], p=p)
+    rows = np.swapaxes(model.Hk(X, p=p), -1, -2)
     for name in ("V", "A"):
         gap = (rows @ state[name][..., None])[..., 0]
         if name == "A":
-            gap = gap + module.constraint_bias(X, state["V"], p)
+            gap = gap + model.constraint_bias(X, state["V"], p=p)
         good = np.isfinite(rows).all(axis=(-1, -2)) & np.isfinite(gap).all(axis=-1)
         step = np.linalg.pinv(np.where(good[..., None, None], rows, 0.0)) @ gap[..., None]
         state[name] = np.where(good[..., None], state[name] - step[..., 0], np.nan)
-
-
-def _lists(value: Any) -> list[Any]:
-    """One array or several, as nested lists."""
-    return [np.asarray(v).tolist() for v in (value if isinstance(value, tuple) else (value,))]
 
 
 if __name__ == "__main__":

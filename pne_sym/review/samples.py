@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pne_sym.model.kinematics import rotation_about
-from pne_sym.review.model import Model
 
 Array = NDArray[np.float64]
 
@@ -30,10 +29,10 @@ def _near(path: str, value: Array, planar: bool, rng: np.random.Generator) -> Ar
         return _turn(rng.normal(0.0, 0.05, 3) * ((0, 0, 1) if planar else 1)) @ value
     if "axis" in path.rpartition(".")[2] or path.endswith("rotation"):
         return value
-    if path.endswith("inertia"):
-        size = float(np.trace(value)) / 3.0
-        noise = rng.normal(0.0, 0.03, (3, 3)) * size
-        return np.asarray(value * rng.uniform(0.8, 1.25) + noise + noise.T, dtype=np.float64)
+    if path.endswith("inertia"):  # congruent, so that no moment of inertia becomes negative
+        skewed = np.eye(3) + rng.normal(0.0, 0.03, (3, 3))
+        moved = rng.uniform(0.8, 1.25) * (skewed @ value @ skewed.T)
+        return np.asarray(0.5 * (moved + moved.T), dtype=np.float64)
     if value.ndim == 0:
         return np.asarray(value * rng.uniform(0.8, 1.25), dtype=np.float64)
     size = float(np.linalg.norm(value))
@@ -45,28 +44,65 @@ def _near(path: str, value: Array, planar: bool, rng: np.random.Generator) -> Ar
     return np.asarray(moved, dtype=np.float64)
 
 
-def random_states(
-    model: Model, count: int, size: float, rng: np.random.Generator
-) -> dict[str, Any]:
-    """X, V, A, tau near home, before constraints are met.
+SHARED = ("weights", "length")
+"""Arguments that are the same for all states."""
+
+
+def random_values(
+    manifest: Mapping[str, Any], count: int, size: float, rng: np.random.Generator
+) -> dict[str, Array]:
+    """Values for the arguments of functions by name, near home, before constraints are met.
 
     Args:
-        model: whose home.
+        manifest: of the model.
         count: of states.
         size: a length of the mechanism, in metres.
         rng: where the random numbers come from.
     """
-    sizes, pose = model.manifest["sizes"], model.manifest["coordinates"]["X"]
-    home = np.array(model.manifest["home"]["X"], dtype=float)
+    sizes, pose = manifest["sizes"], manifest["coordinates"]["X"]
+    home, q = (np.array(manifest["home"][n], dtype=float) for n in ("X", "q"))
     scale = np.array([0.05 * size if n in ("x", "y", "z") else 0.1 for n in pose])
     scale = np.concatenate((scale, np.full(len(home) - len(scale), 0.05)))
-    X = home + scale * rng.normal(size=(count, len(home)))
-    return {
-        "X": X.tolist(),
-        "V": rng.normal(size=(count, sizes["NV"])).tolist(),
-        "A": rng.normal(size=(count, sizes["NV"])).tolist(),
-        "tau": rng.normal(size=(count, sizes["NU"])).tolist(),
+
+    def drawn(key: str, amount: float = 1.0) -> Array:
+        return amount * rng.normal(size=(count, sizes[key]))
+
+    found = {
+        "X": home + scale * rng.normal(size=(count, len(home))),
+        "V": drawn("NV"),
+        "A": drawn("NV"),
+        "tau": drawn("NU"),
+        "wrench": drawn("NW"),
+        "weights": rng.uniform(0.5, 2.0, sizes["NU"]),
+        "length": np.array(rng.uniform(0.5, 2.0) * size),
+        "q0": q + drawn("NJ", 0.01),
     }
+    return found | _orientations(pose, count, rng)
+
+
+def _orientations(pose: list[str], count: int, rng: np.random.Generator) -> dict[str, Array]:
+    """Arguments of the helpers for poses."""
+    places = sum(name in ("x", "y", "z") for name in pose)
+    turns = rng.normal(0.0, 1.0, (count, 3))
+    matrices = [_turn(v if "qw" in pose else v * (0, 0, 1)) for v in turns]
+    side = 3 if "qw" in pose else 2
+    return {
+        "t": rng.normal(size=(count, places)),
+        "rpy": turns,
+        "R": np.array([matrix[:side, :side] for matrix in matrices]),
+    }
+
+
+def actuated(manifest: Mapping[str, Any], q: Array) -> Array:
+    """The displacements of the actuated joints among those of all."""
+    return q[:, [manifest["joints"].index(joint) for joint in manifest["actuators"]]]
+
+
+def resized(value: Array, size: int) -> Array:
+    """As many entries as another version has: cut, or the last one repeated."""
+    if not value.shape[-1]:
+        return np.ones((*value.shape[:-1], size))
+    return value[..., [min(k, value.shape[-1] - 1) for k in range(size)]]
 
 
 def length_of(defaults: Mapping[str, Array]) -> float:

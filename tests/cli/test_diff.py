@@ -69,6 +69,10 @@ def test_revisions_of_a_folder_and_the_spec(repository: Path) -> None:
     found = json.loads(done.stdout)
     assert not found["equal"]
     assert found["equations"] == []
+    assert found["not_compared"] == ""
+    assert {f["path"] for f in found["files"] if f["accounted"]} == {
+        f"my_robot.{kind}" for kind in ("c", "json", "py")
+    }
     assert found["identical_equations"] > 50
     assert {b["verdict"] for b in found["blocks"]} == {"identical text"}
     assert [c["what"] for c in found["interface"]] == ["default of platform.mass"]
@@ -88,8 +92,14 @@ def test_a_spoilt_folder(repository: Path, tmp_path: Path) -> None:
     module.write_text(spoilt)
     done = diff(repository / "generated/my_robot", folder, "--markdown")
     assert (done.returncode, done.stderr) == (1, "")
+    assert "different: not all is compared" in done.stdout
+    assert "my_robot.py: differs, line" in done.stdout
+    assert "| Z |" not in done.stdout
+    done = diff(repository / "generated/my_robot", folder, "--markdown", "--run")
+    assert (done.returncode, done.stderr) == (1, "")
     assert "| Z | different values" in done.stdout
-    assert "| M | identical text |" in done.stdout
+    assert "| M | different text, equal values |" in done.stdout
+    assert "| C: all functions | identical text |" in done.stdout
 
 
 def test_markdown_of_another_mechanism() -> None:
@@ -128,20 +138,39 @@ def test_bad_input(before: str, part: str, repository: Path) -> None:
         ("{", "", "is not JSON"),
         ("[]", "", "is not of pne_sym"),
         ('{"generator": "pne_sym"}', "", "its manifest has no 'name'"),
-        (None, "raise SystemExit(3)", "cannot be run"),
-        (None, "import nothing_like_this", "cannot be run: ModuleNotFoundError"),
-        (None, "def f(:", "cannot be run: SyntaxError"),
     ],
 )
 def test_a_folder_that_is_at_fault(
-    manifest: str | None, module: str, part: str, repository: Path, tmp_path: Path
+    manifest: str, module: str, part: str, repository: Path, tmp_path: Path
 ) -> None:
     folder = tmp_path / "my_robot"
     folder.mkdir()
-    good = (repository / "generated/my_robot/my_robot.json").read_text()
-    (folder / "my_robot.json").write_text(good if manifest is None else manifest)
+    (folder / "my_robot.json").write_text(manifest)
     (folder / "my_robot.py").write_text(module)
     assert_refused(diff(folder, "stewart"), part)
+
+
+@pytest.mark.parametrize(
+    ("module", "part"),
+    [
+        ("raise SystemExit(3)", "cannot be run"),
+        ("import nothing_like_this", "cannot be run: ModuleNotFoundError"),
+        ("def f(:", "cannot be run: SyntaxError"),
+    ],
+)
+def test_a_module_that_is_at_fault(
+    module: str, part: str, repository: Path, tmp_path: Path
+) -> None:
+    folder = tmp_path / "my_robot"
+    folder.mkdir()
+    for name, content in tree(repository / "generated/my_robot").items():
+        (folder / name).write_bytes(content)
+    (folder / "my_robot.py").write_text(module)
+    done = diff(repository / "generated/my_robot", folder, "--run")
+    assert (done.returncode, done.stderr) == (1, "")
+    assert "values not compared" in done.stdout
+    assert part in done.stdout
+    assert part not in diff(repository / "generated/my_robot", folder).stdout
 
 
 def test_two_formats_exclude_each_other() -> None:

@@ -109,12 +109,16 @@ def test_the_workflows_own_commands(repository: Path) -> None:
     done = shell(step("Diff"), repository, **base)
     assert (done.returncode, done.stderr) == (0, "")
     comment = (repository / "comment.md").read_text()
-    assert "## my_robot\n### ✅ equal: identical text" in comment
+    assert "## my_robot\n### ⚠️ different: not all is compared" in comment
+    assert "my_robot.py: differs, line" in comment
+    assert "## planar_3rpr\n### ✅ equal: identical text" in comment
     assert "## sixbar\nNew.\n" in comment
 
 
 def test_the_workflow_is_yaml_that_names_no_secret_but_its_token() -> None:
     assert "pull_request_target" not in WORKFLOW
+    assert "--run" not in WORKFLOW
+    assert "install ." not in WORKFLOW
     assert re.findall(r"\$\{\{ ([\w.]+) \}\}", WORKFLOW) == [
         "github.base_ref",
         "github.token",
