@@ -5,19 +5,15 @@ Reference: inverse dynamics Eq. 3, equations of motion Eqs. 5 to 7, constraints 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from pne_sym.derivation import Coordinates, Derivation
+from pne_sym.lowering.public_pose import pose_functions
+from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.ir import Program
-from pne_sym.program.operations import OPERATIONS
 from pne_sym.program.public import (
-    Apply,
     Argument,
     Default,
     PublicFunction,
-    Run,
     Search,
-    Step,
     Value,
     verify_steps,
 )
@@ -50,42 +46,15 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
     assert coordinates is not None
     guessed = any(not t.is_closed for t in derivation.leg_types)
     writer = _Writer(coordinates, program, guessed=guessed)
-    found = (*writer.of_program(), *writer.of_dynamics(), *writer.of_kinematics())
+    found = (
+        *writer.of_program(),
+        *writer.of_dynamics(),
+        *writer.of_kinematics(),
+        *pose_functions(coordinates),
+    )
     for function in found:
         verify_steps(function)
     return found
-
-
-class _Algorithm:
-    """Steps under construction; arrays get names of their own."""
-
-    def __init__(self) -> None:
-        self.steps: list[Step] = []
-        self._made = 0
-
-    def run(self, function: str, program: Program, *wanted: str) -> list[Value]:
-        """Run a function of the program; returns some of its arrays."""
-        arrays = program.functions[function].arrays
-        values = {a: Value(f"{a}_of_{function}", program.shapes[a]) for a in arrays}
-        self.steps.append(Run(function, tuple(values.values())))
-        return [values[a] for a in wanted]
-
-    def apply(self, operation: str, *operands: Value, numbers: Iterable[int] = ()) -> Value:
-        """Apply an operation with one result."""
-        (value,) = self.apply_all(operation, *operands, numbers=numbers)
-        return value
-
-    def apply_all(
-        self, operation: str, *operands: Value, numbers: Iterable[int] = ()
-    ) -> tuple[Value, ...]:
-        """Apply an operation."""
-        fixed = tuple(numbers)
-        targets = []
-        for shape in OPERATIONS[operation].shapes(tuple(o.shape for o in operands), fixed):
-            self._made += 1
-            targets.append(Value(f"{operation}_{self._made}", shape))
-        self.steps.append(Apply(operation, operands, tuple(targets), fixed))
-        return tuple(targets)
 
 
 class _Writer:
@@ -114,7 +83,7 @@ class _Writer:
         name: str,
         meaning: str,
         inputs: str,
-        algorithm: _Algorithm,
+        algorithm: Algorithm,
         *outputs: Argument,
         group: str = "dynamics",
         **more: object,
@@ -149,13 +118,13 @@ class _Writer:
         found = []
         for name, meaning, inputs, array, dimensions, group in rows:
             if name in self.program.functions:
-                a = _Algorithm()
+                a = Algorithm()
                 (value,) = a.run(name, self.program, array)
                 out = self.made(value, array, meaning, *dimensions)
                 found.append(
                     self.function(name, meaning, inputs, a, out, group=group, counted=name)
                 )
-        a = _Algorithm()
+        a = Algorithm()
         M, Z, H = a.run("dynamics", self.program, "M", "Z", "H")
         outputs = (
             self.made(M, "M", "inertia matrix", "NV", "NV"),
@@ -179,11 +148,11 @@ class _Writer:
         ]
         return [*found, self._null_space()] if self.n["NU"] else found
 
-    def _external(self, a: _Algorithm) -> Value:
+    def _external(self, a: Algorithm) -> Value:
         return a.apply("extend", self.given("wrench").value, numbers=[self.n["NV"]])
 
     def _forces(
-        self, a: _Algorithm, required: Value, drives: list[Value], *, weighted: bool = False
+        self, a: Algorithm, required: Value, drives: list[Value], *, weighted: bool = False
     ) -> tuple[Value, ...]:
         """tau, and lambda where there are constraints, with H tau + Hk lambda = required."""
         facts = self.c.actuation
@@ -218,7 +187,7 @@ class _Writer:
         return tau, a.apply("solve", system, a.apply("times", left, rest))
 
     def _least(
-        self, a: _Algorithm, H: Value, f: Value, across: Value | None, *, weighted: bool
+        self, a: Algorithm, H: Value, f: Value, across: Value | None, *, weighted: bool
     ) -> Value:
         """tau of least (weighted) norm, on rows that constraint forces do not act on."""
         scale = a.apply("inverse_root", self.given("weights").value) if weighted else None
@@ -229,7 +198,7 @@ class _Writer:
         return a.apply("multiply", scale, least) if scale else least
 
     def _attainable(
-        self, a: _Algorithm, H: Value, Hk: Value | None, f: Value
+        self, a: Algorithm, H: Value, Hk: Value | None, f: Value
     ) -> tuple[Value, Value | None, Value]:
         """Combinations of rows that resolve the drives, and the force nearest to their range."""
         facts = self.c.actuation
@@ -243,7 +212,7 @@ class _Writer:
         return a.apply("product", rows, H), Hk, a.apply("times", rows, f)
 
     def _inverse_dynamics(self) -> PublicFunction:
-        a = _Algorithm()
+        a = Algorithm()
         names = ["required", "H", *(["Hk"] if self.constrained else [])]
         required, *drives = a.run("required", self.program, *names)
         needed = a.apply("subtract", required, self._external(a))
@@ -263,7 +232,7 @@ class _Writer:
         return found + [self.made(v, "lambda", "constraint forces [N or N m]", "NC") for v in rest]
 
     def _forward_dynamics(self) -> PublicFunction:
-        a = _Algorithm()
+        a = Algorithm()
         names = ["M", "Z", "H", *(["Hk", "constraint_bias"] if self.constrained else [])]
         M, Z, H, *constraint = a.run("dynamics", self.program, *names)
         force = a.apply("times", H, self.given("tau").value)
@@ -288,7 +257,7 @@ class _Writer:
         )
 
     def _complete_acceleration(self) -> PublicFunction:
-        facts, a = self.c.actuation, _Algorithm()
+        facts, a = self.c.actuation, Algorithm()
         A = self.given("A").value
         if not facts.is_determined and facts.passive:
             done = a.apply("impossible", A, numbers=[self.n["NV"]])
@@ -304,7 +273,7 @@ class _Writer:
             self.made(done, "completed", "acceleration", "NV"),
         )
 
-    def _completed(self, a: _Algorithm, A: Value) -> Value:
+    def _completed(self, a: Algorithm, A: Value) -> Value:
         facts = self.c.actuation
         unique = facts.idle == len(facts.passive)
         known = a.apply("clear_at", A, numbers=facts.passive) if unique else A
@@ -330,7 +299,7 @@ class _Writer:
         return a.apply("add_at", known, change, numbers=facts.passive)
 
     def _leg_reactions(self) -> PublicFunction:
-        a = _Algorithm()
+        a = Algorithm()
         names = ["required", "H", *(["Hk"] if self.constrained else [])]
         required, *drives = a.run("required", self.program, *names)
         needed = a.apply("subtract", required, self._external(a))
@@ -357,7 +326,7 @@ class _Writer:
         )
 
     def _energy(self) -> PublicFunction:
-        a = _Algorithm()
+        a = Algorithm()
         (M,) = a.run("M", self.program, "M")
         (potential,) = a.run("potential", self.program, "potential")
         kinetic = a.apply("half_form", self.given("V").value, M)
@@ -373,7 +342,7 @@ class _Writer:
         )
 
     def _null_space(self) -> PublicFunction:
-        a = _Algorithm()
+        a = Algorithm()
         (H,) = a.run("H", self.program, "H")
         basis = a.apply("null_basis", H, numbers=[self.c.actuation.force_rank])
         return self.function(
@@ -393,7 +362,7 @@ class _Writer:
 
     def _mismatch(self) -> PublicFunction:
         """By how much actuated joints and constraints miss."""
-        a, joints = _Algorithm(), [self.c.joints.index(j) for j in self.c.actuators]
+        a, joints = Algorithm(), [self.c.joints.index(j) for j in self.c.actuators]
         (q,) = a.run("inverse_kinematics", self.program, "q")
         own = a.apply("take", q, numbers=joints)
         gap = a.apply("subtract", self.given("q_actuated").value, own)
@@ -411,7 +380,7 @@ class _Writer:
 
     def _slope(self) -> PublicFunction:
         """Transpose of the derivative of what is measured, by a displacement of the pose."""
-        a = _Algorithm()
+        a = Algorithm()
         (H,) = a.run("H", self.program, "H")
         if self.constrained:
             (Hk,) = a.run("Hk", self.program, "Hk")
@@ -423,7 +392,7 @@ class _Writer:
         )  # fmt: skip
 
     def _forward_kinematics(self) -> PublicFunction:
-        a, X = _Algorithm(), Value("X_found", (self.n["NQ"],))
+        a, X = Algorithm(), Value("X_found", (self.n["NQ"],))
         a.steps.append(Search("mismatch", "slope", self.given("X0").value, X, halving=True))
         return self.function(
             "forward_kinematics",
@@ -435,12 +404,12 @@ class _Writer:
         )
 
     def _projection(self) -> list[PublicFunction]:
-        residual = _Algorithm()
+        residual = Algorithm()
         (gap,) = residual.run("constraints", self.program, "constraints")
         gap = residual.apply("negative", gap)
-        slope = _Algorithm()
+        slope = Algorithm()
         (Hk,) = slope.run("Hk", self.program, "Hk")
-        a, X = _Algorithm(), Value("X_found", (self.n["NQ"],))
+        a, X = Algorithm(), Value("X_found", (self.n["NQ"],))
         a.steps.append(
             Search("constraint_gap", "constraint_slope", self.given("X").value, X, halving=False)
         )

@@ -47,6 +47,8 @@ class Operation:
         return [array.shape[1:] for array in found]
 
 
+ORTHONORMAL = 1e-6
+"""By how much the products of a rotation matrix's rows may differ from those of unit vectors."""
 OPERATIONS: dict[str, Operation] = {}
 _Compute = Callable[..., tuple[Array, ...]]
 
@@ -296,17 +298,63 @@ def _row_sizes(a: Array) -> Array:
 
 @_operation()
 def rotation_of_quaternion(a: Array) -> tuple[Array, ...]:
-    """The rotation matrix of the quaternion a (x, y, z, w) of any length."""
-    with np.errstate(all="ignore"):
-        largest = np.max(np.abs(a), axis=1, keepdims=True)
-        q = a / np.where((largest > 0.0) & np.isfinite(largest), largest, np.nan)
-        x, y, z, w = (q / np.linalg.norm(q, axis=1, keepdims=True)).T
+    """The rotation matrix of the quaternion a (x, y, z, w) of any length; INVALID if it is zero."""
+    x, y, z, w = _scaled(a).T
+    n = x * x + y * y + z * z + w * w
     rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
+        (x * x + w * w - (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
+        (2 * (x * y + w * z), y * y + w * w - (x * x + z * z), 2 * (y * z - w * x)),
+        (2 * (x * z - w * y), 2 * (y * z + w * x), z * z + w * w - (x * x + y * y)),
     )
-    return (np.moveaxis(np.array(rows), -1, 0),)
+    return (np.moveaxis(np.array(rows) / n, -1, 0),)
+
+
+def _scaled(q: Array) -> Array:
+    """Quaternions with largest entry 1, so that squares of tiny ones keep their digits.
+
+    NaN where the squared length overflows: such a state is INVALID everywhere.
+    """
+    size = np.max(np.abs(q), axis=1, keepdims=True)
+    squared = np.sum(q * q, axis=1, keepdims=True)
+    return q / np.where(np.isfinite(squared), size, np.float64(np.nan))
+
+
+def _unit(q: Array) -> Array:
+    q = _scaled(q)
+    unit: Array = q / np.linalg.norm(q, axis=1, keepdims=True)
+    return unit
+
+
+@_operation()
+def quaternion_of_rotation(a: Array) -> tuple[Array, ...]:
+    """The quaternion of the rotation matrix a; INVALID if that is none, to `ORTHONORMAL`."""
+    x, y, z = a[:, 0, 0], a[:, 1, 1], a[:, 2, 2]
+    s = a[:, 2, 1] + a[:, 1, 2], a[:, 0, 2] + a[:, 2, 0], a[:, 1, 0] + a[:, 0, 1]
+    d = a[:, 2, 1] - a[:, 1, 2], a[:, 0, 2] - a[:, 2, 0], a[:, 1, 0] - a[:, 0, 1]
+    candidates = np.array(  # each is four times the quaternion times one of its entries
+        [
+            (1 + x - y - z, s[2], s[1], d[0]),
+            (s[2], 1 - x + y - z, s[0], d[1]),
+            (s[1], s[0], 1 - x - y + z, d[2]),
+            (d[0], d[1], d[2], 1 + x + y + z),
+        ]
+    )
+    best = np.argmax(np.linalg.norm(candidates, axis=1), axis=0)
+    q = candidates[best, :, np.arange(len(a))]
+    return (np.where(_are_rotations(a)[:, None], _unit(q), np.float64(np.nan)),)
+
+
+@_operation()
+def angle_of_rotation(a: Array) -> tuple[Array, ...]:
+    """The angle of the rotation a of the plane; INVALID if that is none, to `ORTHONORMAL`."""
+    angle = np.arctan2(a[:, 1, 0], a[:, 0, 0])
+    return (np.where(_are_rotations(a), angle, np.float64(np.nan))[:, None],)
+
+
+def _are_rotations(a: Array) -> NDArray[np.bool_]:
+    blank = _blanked(a, ~finite(a))
+    error = np.abs(blank @ np.swapaxes(blank, -1, -2) - np.eye(a.shape[-1])).max(axis=(1, 2))
+    return np.asarray((error <= ORTHONORMAL) & (np.linalg.det(blank) > 0.0), dtype=np.bool_)
 
 
 @_operation()
@@ -346,7 +394,7 @@ def turn_quaternion(a: Array, b: Array) -> tuple[Array, ...]:
     with np.errstate(all="ignore"):
         angle = np.linalg.norm(b, axis=1, keepdims=True)
         v, c = b * (0.5 * np.sinc(angle / (2.0 * np.pi))), np.cos(0.5 * angle)
-        q = a / np.linalg.norm(a, axis=1, keepdims=True)
+        q = _unit(a)
         vector = c * q[:, :3] + q[:, 3:] * v + np.cross(v, q[:, :3])
         scalar = c * q[:, 3:] - np.sum(v * q[:, :3], axis=1, keepdims=True)
     return (np.concatenate((vector, scalar), axis=1),)

@@ -40,6 +40,10 @@ def states(manipulator: Manipulator, m: Any) -> dict[str, Array]:
     guess = {"q0": q0} if "q0" in m.M.__code__.co_varnames else {}
     q = m.inverse_kinematics(X, **guess)
     joints = list(m._DRIVEN_JOINTS)
+    if hasattr(m, "rotation"):
+        guess["R"] = m.rotation(X)
+        guess["t"] = X[:, : {6: 3, 3: 0 if m.NQ > m.NV else 2}[m.NW]]
+        guess["rpy"] = rng.uniform(-1.0, 1.0, (STATES, 3))
     return {
         "X": X,
         "X0": X + 1e-4 * rng.uniform(-1.0, 1.0, X.shape),
