@@ -18,6 +18,7 @@ from pne_sym.backends.c_model import (
 from pne_sym.backends.c_text import Routine, wrapped
 from pne_sym.backends.describe import Described, describe
 from pne_sym.backends.templating import render
+from pne_sym.program.ir import Closure
 
 
 @dataclass(frozen=True)
@@ -25,26 +26,14 @@ class CClosure:
     """Legs of a type whose displacements are found by iteration.
 
     Attributes:
-        leg: name of the type.
-        joints: positions in q of the displacements that are looked for, per leg.
+        of: their positions in q.
         rows: conditions of a leg.
         call: of the function that gives its gap and Jacobian.
     """
 
-    leg: str
-    joints: tuple[tuple[int, ...], ...]
+    of: Closure
     rows: int
     call: str
-
-    @property
-    def unknowns(self) -> int:
-        """Displacements of a leg that are looked for."""
-        return len(self.joints[0])
-
-    @property
-    def places(self) -> tuple[int, ...]:
-        """The positions, leg after leg."""
-        return tuple(j for leg in self.joints for j in leg)
 
 
 @dataclass(frozen=True)
@@ -133,8 +122,8 @@ class CBackend:
             checks=tuple(parameter_checks(bundle)),
             prepare=tuple(prepare_body(bundle)),
             closures=closures,
-            extra_joints=tuple(c.joints.index(e) for e in c.extras),
-            turning_joints=tuple(j for x in closures for j in x.places if c.turning[j]),
+            extra_joints=tuple(joint for joint, _ in bundle.program.given),
+            turning_joints=tuple(j for x in closures for j in x.of.turning),
             closure_functions=tuple(t for n, t in functions.items() if _is_closure(n)),
             functions=tuple(t for n, t in functions.items() if not _is_closure(n)),
             calls=_calls(runs),
@@ -149,7 +138,7 @@ class CBackend:
                 n["NV"],
                 n["NU"] + n["NC"],
                 len(d.driven_rows),
-                *(max(x.rows, x.unknowns) for x in closures),
+                *(max(x.rows, x.of.unknowns) for x in closures),
             ),
             q0=c.pose.index("qx") if c.has_quaternion else 0,
             driven_joints=driven,
@@ -179,19 +168,13 @@ def _is_closure(function: str) -> bool:
 
 def _closures(bundle: Bundle, runs: dict[str, Routine]) -> tuple[CClosure, ...]:
     """The legs whose displacements are found by iteration."""
-    c = bundle.coordinates
     return tuple(
         CClosure(
-            t.name,
-            tuple(
-                tuple(c.joints.index((leg, j)) for j in range(t.joints) if t.methods[j] != "given")
-                for leg in t.indices
-            ),
-            bundle.program.shapes[f"gap_{t.name}"][1],
-            runs[f"closure_{t.name}"].call(w="1", joints="q"),
+            closure,
+            bundle.program.shapes[f"gap_{closure.leg_type}"][1],
+            runs[f"closure_{closure.leg_type}"].call(w="1", joints="q"),
         )
-        for t in bundle.derivation.leg_types
-        if not t.is_closed
+        for closure in bundle.program.closures
     )
 
 

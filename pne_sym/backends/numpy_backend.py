@@ -16,15 +16,8 @@ from pne_sym.backends.numpy_parts import Parts
 from pne_sym.backends.numpy_text import PythonText
 from pne_sym.backends.templating import render
 from pne_sym.derivation import LegTypeInfo
+from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
-
-
-@dataclass(frozen=True)
-class ClosureView:
-    """Legs of a type whose displacements are found by iteration."""
-
-    plan: str
-    joints: list[list[int]]
 
 
 @dataclass(frozen=True)
@@ -38,7 +31,7 @@ class ModuleView:
     driven_joints: tuple[int, ...]
     turning_drives: tuple[int, ...]
     actuator_legs: tuple[int, ...]
-    closures: tuple[ClosureView, ...]
+    closures: tuple[Closure, ...]
     extra_joints: tuple[int, ...]
     turning_joints: tuple[bool, ...]
     branches: tuple[str, ...]
@@ -74,30 +67,14 @@ class NumpyBackend:
             driven,
             tuple(k for k, j in enumerate(driven) if c.turning[j]),
             tuple(leg for leg, _ in c.actuators),
-            _closures(bundle),
-            tuple(c.joints.index(e) for e in c.extras),
+            bundle.program.closures,
+            tuple(joint for joint, _ in bundle.program.given),
             c.turning,
             _branches(bundle),
             _prepare(bundle, text),
             tuple(part.text() for part in parts),
             tuple(part.plan() for part in parts),
         )
-
-
-def _closures(bundle: Bundle) -> tuple[ClosureView, ...]:
-    """What the iteration on the loop closure needs, per leg type."""
-    c = bundle.coordinates
-    return tuple(
-        ClosureView(
-            f"_CLOSURE_{t.name.upper()}",
-            [
-                [c.joints.index((leg, j)) for j in range(t.joints) if t.methods[j] != "given"]
-                for leg in t.indices
-            ],
-        )
-        for t in bundle.derivation.leg_types
-        if not t.is_closed
-    )
 
 
 def _default_lines(f: FieldView) -> list[str]:

@@ -68,6 +68,16 @@ class ParameterTable:
             symbols.append(symbol)
         return tuple(symbols)
 
+    def values(self) -> dict[str, NDArray[np.float64]]:
+        """Default of every entry by name, and the signs of the branches: a number, or (legs,)."""
+        found: dict[str, NDArray[np.float64]] = {
+            name: np.asarray(of.default, dtype=float).reshape(-1, of.size)[:, index]
+            for name, (of, index) in self.entries.items()
+        }
+        found = {n: v if self.entries[n][0].leg_type else v[0] for n, v in found.items()}
+        signs = {n: np.array(v, dtype=float) for n, (_, v) in self.branches.items()}
+        return found | signs
+
     def add_branch(self, name: str, leg_type: str, signs: tuple[int, ...]) -> sp.Symbol:
         """Add a sign per leg that is fixed at generation."""
         symbol = sp.Symbol(name, real=True)

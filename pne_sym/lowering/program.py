@@ -10,6 +10,7 @@ import sympy as sp
 
 from pne_sym.derivation import Derivation, Output
 from pne_sym.lowering.builder import Atom, Builder, Statement
+from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.inputs import leg_inputs, unpack
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
@@ -62,7 +63,7 @@ def lower(derivation: Derivation) -> Program:
     _declare(derivation, builder)
     shapes = _shapes(derivation)
     slices = []
-    for group in (*GROUPS, *_closures(derivation)):
+    for group in (*GROUPS, *_closure_groups(derivation)):
         stores = _cheapest_stores(derivation, builder, {a for _, names in group for a in names})
         for name, arrays in group:
             chosen = [
@@ -82,7 +83,7 @@ def lower(derivation: Derivation) -> Program:
     return program
 
 
-def _closures(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
+def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
     """A function per leg type whose displacements are found by iteration."""
     return [
         ((f"closure_{t.name}", (f"gap_{t.name}", f"jacobian_{t.name}")),)
@@ -270,7 +271,15 @@ def _program(derivation: Derivation, builder: Builder, slices: list[_Slice]) -> 
     listed = tuple((store.array, at.leg_type) for at, store in stores)
     reserved = outside | {name for name, _ in listed}
     functions = {s.part.name: _function(derivation, builder, s, names, reserved) for s in sliced}
-    return Program(prepare, listed, functions, _shapes(derivation))
+    return Program(
+        prepare,
+        listed,
+        functions,
+        _shapes(derivation),
+        dict(builder.leg_counts),
+        closures(derivation),
+        given_displacements(derivation),
+    )
 
 
 def _sliced(builder: Builder, part: _Slice) -> _Sliced:

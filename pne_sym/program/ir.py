@@ -195,6 +195,34 @@ class Function:
 
 
 @dataclass(frozen=True)
+class Closure:
+    """Legs of a type whose displacements Newton's iteration on the loop closure finds.
+
+    The function closure_TYPE gives the arrays gap_TYPE (legs, conditions) and jacobian_TYPE
+    (legs, conditions x unknowns).
+
+    Attributes:
+        leg_type: name of the type.
+        joints: positions in q of the displacements that are looked for, per leg.
+        turning: those of all these positions that are angles.
+    """
+
+    leg_type: str
+    joints: tuple[tuple[int, ...], ...]
+    turning: tuple[int, ...]
+
+    @property
+    def unknowns(self) -> int:
+        """Displacements of a leg that are looked for."""
+        return len(self.joints[0])
+
+    @property
+    def places(self) -> tuple[int, ...]:
+        """The positions, leg after leg."""
+        return tuple(j for leg in self.joints for j in leg)
+
+
+@dataclass(frozen=True)
 class Program:
     """All functions of a model and the preparation of its parameters.
 
@@ -203,9 +231,15 @@ class Program:
         prepared: prepared values that functions read: (name, leg type or "").
         functions: by name.
         shapes: shape of each output array.
+        leg_counts: number of legs by leg type.
+        closures: leg types whose displacements are found by iteration.
+        given: (position in q, position in X) of the extra coordinates.
     """
 
     prepare: tuple[Block, ...]
     prepared: tuple[tuple[str, str], ...]
     functions: dict[str, Function] = field(default_factory=dict)
     shapes: dict[str, tuple[int, ...]] = field(default_factory=dict)
+    leg_counts: dict[str, int] = field(default_factory=dict)
+    closures: tuple[Closure, ...] = ()
+    given: tuple[tuple[int, int], ...] = ()

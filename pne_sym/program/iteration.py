@@ -1,0 +1,80 @@
+"""Newton's iteration on the loop closure of legs without a closed form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from pne_sym.program.evaluate import Array, Flags, evaluate
+from pne_sym.program.ir import Closure, Program
+from pne_sym.program.linear import solve
+
+STEPS = 60
+"""So many steps at most."""
+LONGEST = 0.5
+"""Largest entry of a step [m, rad]: longer ones are shortened, for all legs of the type alike."""
+STEADY = 1e-11
+"""A step [m, rad] below which the displacements have converged."""
+
+
+def close_loops(
+    program: Program, prepared: Mapping[str, Array], X: Array, q0: Array
+) -> tuple[Array, Flags]:
+    """Displacements that close the loops at X (states, NQ), from the guess q0 (states, NJ).
+
+    Returns:
+        q (states, NJ), revolute ones in (-pi, pi], and where the iteration has converged.
+        Displacements with a closed form are those of the guess.
+    """
+    q = np.array(np.broadcast_to(q0, (len(X), q0.shape[-1])), dtype=float)
+    for joint, place in program.given:
+        q[:, joint] = X[:, place]
+    converged = np.isfinite(X).all(axis=1) & np.isfinite(q).all(axis=1)
+    for closure in program.closures:
+        converged &= _close_legs(program, closure, prepared, X, q)
+        turning = list(closure.turning)
+        with np.errstate(all="ignore"):
+            q[:, turning] = np.pi - np.remainder(np.pi - q[:, turning], 2.0 * np.pi)
+    return q, converged
+
+
+def _close_legs(
+    program: Program, closure: Closure, prepared: Mapping[str, Array], X: Array, q: Array
+) -> Flags:
+    """Close the legs of a type; q is changed.  Which states have converged."""
+    joints = np.array(closure.joints)
+    converged = np.zeros(len(X), dtype=bool)
+    open_ = np.flatnonzero(np.isfinite(X).all(axis=1) & np.isfinite(q).all(axis=1))
+    for _ in range(STEPS):
+        gap, jacobian = gap_and_jacobian(program, closure, prepared, X[open_], q[open_])
+        step = newton_step(jacobian, gap)
+        largest = np.asarray(np.max(np.abs(step), axis=(1, 2), initial=0.0))
+        with np.errstate(all="ignore"):
+            step *= np.minimum(1.0, LONGEST / largest)[:, None, None]
+        q[open_[:, None, None], joints] += step
+        converged[open_[np.less_equal(largest, STEADY)]] = True
+        open_ = open_[np.greater(largest, STEADY)]
+        if not open_.size:
+            break
+    return converged
+
+
+def gap_and_jacobian(
+    program: Program, closure: Closure, prepared: Mapping[str, Array], X: Array, q: Array
+) -> tuple[Array, Array]:
+    """Gaps (states, legs, conditions) and Jacobians (states, legs, conditions, unknowns)."""
+    name = closure.leg_type
+    found = evaluate(program, f"closure_{name}", prepared, {"X": X, "q": q}).outputs
+    jacobian = found[f"jacobian_{name}"].reshape(*found[f"gap_{name}"].shape, closure.unknowns)
+    return found[f"gap_{name}"], jacobian
+
+
+def newton_step(jacobian: Array, gap: Array) -> Array:
+    """Solution of jacobian step = gap per leg, least squares where there are fewer unknowns."""
+    if jacobian.shape[-1] == jacobian.shape[-2]:
+        return solve(jacobian, gap)
+    known = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(gap).all(axis=-1)
+    inverse = np.linalg.pinv(np.where(known[..., None, None], jacobian, 0.0))
+    step = np.where(known[..., None, None], inverse, np.nan) @ gap[..., None]
+    return np.asarray(step[..., 0])
