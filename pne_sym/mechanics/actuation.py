@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from pne_sym.derivation import Actuation
-from pne_sym.mechanics.mobility import DEPENDENT, closure_at_home, mobility, null_space
+from pne_sym.mechanics.mobility import DEPENDENT, mobility, motions_at_home
 from pne_sym.model.closure import leg_gap, unreachable
 from pne_sym.model.kinematics import TASK_SPACES, Array, displaced, pose_at, rotation_about
 from pne_sym.model.loops import Loops, all_closed
@@ -80,7 +80,7 @@ def _ranks(m: Manipulator, size: int) -> _Ranks:
     joints = [joint for leg in m.legs for joint in leg.joints]
     actuated = np.array([joint.actuated for joint in joints], dtype=bool)
     passive = np.array([joint.extra and not joint.actuated for joint in joints], dtype=bool)
-    motions, twist = null_space(closure_at_home(m)), len(TASK_SPACES[m.space].components)
+    motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     platform, rates = motions[:twist], motions[twist:]
     freedoms, held = motions.shape[1], _rank(rates[actuated])
     return _Ranks(
@@ -169,7 +169,7 @@ def _closed(m: Manipulator, X: Array, q: Array) -> Manipulator | None:
 
 def _elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
     """The same mechanism moved a random way along its freedoms."""
-    motions, twist = null_space(closure_at_home(m)), len(TASK_SPACES[m.space].components)
+    motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])
     loops, space = Loops(m.space, m.legs, m.fixed_centre), TASK_SPACES[m.space]
     shifts = [k < 3 for k in space.components] + [not joint.turns for joint in loops.joints]

@@ -178,9 +178,12 @@ def drive_quality(manipulator: Manipulator) -> float:
     return float(np.linalg.svd(rows, compute_uv=False)[-1])
 
 
-def closure_at_home(manipulator: Manipulator) -> Array:
-    """Conditions of all loops (rows) on the platform's twist, then the rates of all joints."""
-    return _closure(manipulator)[0]
+def motions_at_home(manipulator: Manipulator) -> Array:
+    """Rates of the platform (its free twist components) and of all joints that keep loops closed.
+
+    Orthonormal columns, one for every degree of freedom at home.
+    """
+    return null_space(_closure(manipulator)[0])
 
 
 def null_space(matrix: Array) -> Array:

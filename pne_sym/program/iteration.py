@@ -24,7 +24,8 @@ def close_loops(
     """Displacements that close the loops at X (states, NQ), from the guess q0 (states, NJ).
 
     Returns:
-        q (states, NJ), revolute ones in (-pi, pi], and where the iteration has converged.
+        q (states, NJ), revolute ones in (-pi, pi], and where the iteration has converged on the
+        assembly branch of home.
         Displacements with a closed form are those of the guess.
     """
     q = np.array(np.broadcast_to(q0, (len(X), q0.shape[-1])), dtype=float)
@@ -49,12 +50,14 @@ def _close_legs(
     for _ in range(STEPS):
         gap, jacobian = gap_and_jacobian(program, closure, prepared, X[open_], q[open_])
         step = newton_step(jacobian, gap)
-        largest = np.asarray(np.max(np.abs(step), axis=(1, 2), initial=0.0))
+        largest: Array = np.max(np.abs(step), axis=(1, 2), initial=0.0)
         with np.errstate(all="ignore"):
-            step *= np.minimum(1.0, LONGEST / largest)[:, None, None]
+            shortened: Array = np.minimum(1.0, LONGEST / largest)
+        step *= shortened[:, None, None]
         q[open_[:, None, None], joints] += step
-        converged[open_[np.less_equal(largest, STEADY)]] = True
-        open_ = open_[np.greater(largest, STEADY)]
+        steady = largest <= STEADY
+        converged[open_[steady]] = on_home_s_branch(closure, jacobian[steady])
+        open_ = open_[largest > STEADY]
         if not open_.size:
             break
     return converged
@@ -70,11 +73,22 @@ def gap_and_jacobian(
     return found[f"gap_{name}"], jacobian
 
 
+def on_home_s_branch(closure: Closure, jacobian: Array) -> Flags:
+    """Whether all legs are on the side of their singular states on which they are at home.
+
+    Always so where no sign tells.
+    """
+    if not closure.rows:
+        return np.ones(len(jacobian), dtype=bool)
+    signs, _ = np.linalg.slogdet(jacobian[:, :, list(closure.rows)])
+    return np.asarray((signs * np.array(closure.signs) > 0.0).all(axis=1))
+
+
 def newton_step(jacobian: Array, gap: Array) -> Array:
     """Solution of jacobian step = gap per leg, least squares where there are fewer unknowns."""
     if jacobian.shape[-1] == jacobian.shape[-2]:
         return solve(jacobian, gap)
-    known = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(gap).all(axis=-1)
+    known: Flags = np.asarray(np.isfinite(jacobian).all(axis=(-1, -2)))
     inverse = np.linalg.pinv(np.where(known[..., None, None], jacobian, 0.0))
     step = np.where(known[..., None, None], inverse, np.nan) @ gap[..., None]
     return np.asarray(step[..., 0])
