@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from functools import lru_cache
 from typing import Any
 
+import sympy as sp
+
 from pne_sym.derivation.equation import Derivation, Equation, Quantity, Trouble
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.vector.dimensions import (
@@ -45,7 +47,8 @@ def wrong_dimensions(derivation: Derivation) -> Iterator[str]:
     """What contradicts itself: an equation's id and name, what is stated and what is computed.
 
     Right-hand sides and other forms must have the dimension of the stated unit, the terms of
-    every sum one dimension, a tested quantity that of its scale.
+    every sum one dimension, a tested quantity that of its scale.  A measured number (a float,
+    all that stands right) has the unit that is stated.
     """
     units = Dimensions(derivation.notation, derivation.parameters)
     for equation in derivation.equations():
@@ -53,6 +56,8 @@ def wrong_dimensions(derivation: Derivation) -> Iterator[str]:
         stated = units[equation.name]
         try:
             for expr in (equation.rhs, *equation.forms):
+                if isinstance(expr, sp.Float):
+                    continue
                 found = dimension(expr, units)
                 if found not in (None, stated):
                     yield f"{where}: stated {stated}, computed {found} of {expr}"
