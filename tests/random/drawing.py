@@ -132,6 +132,8 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
         anywhere: whether every second mechanism, and nearly all with extra coordinates, have
             drives anywhere, in any number; False: as many as freedoms, or one or two more or less.
     """
+    if seed % GUIDED == 11:
+        return guided(np.random.default_rng([seed, 3]))
     drawn = _drawn(seed, light=light)
     # A generator of its own: geometries stay those of the seed.
     rng = np.random.default_rng([seed, 1])
@@ -141,8 +143,6 @@ def draw(seed: int, *, light: bool = False, anywhere: bool = True) -> Manipulato
 
 
 def _drawn(seed: int, *, light: bool) -> Manipulator:
-    if seed % GUIDED == 11:
-        return guided(np.random.default_rng([seed, 3]))
     rng = np.random.default_rng(seed)
     # Drawn once: spaces where fewer structures are regular are not to become rare.
     space = Space(rng.choice(list(_SPACES), p=list(_SPACES.values())))

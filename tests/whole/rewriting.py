@@ -195,7 +195,8 @@ class Rewriting:
         }
         if "Hk" in found:
             wanted["Hk"] = back.T @ found["Hk"]
-            wanted["bias"] = found["bias"] - wanted["Hk"].T @ self.drift(s.X, s.V)
+            change = wanted["Hk"].T @ self.drift(s.X, s.V)
+            wanted["bias"] = found["bias"] - np.append(change, 0.0)
         return wanted
 
 
