@@ -27,7 +27,6 @@ from tests.oracle.coordinates import (
     actuated_indices,
     extra_indices,
     is_planar,
-    passive_extra_rows,
     pose_size,
     task_size,
 )
@@ -286,11 +285,9 @@ class PinocchioModel:
     def _drives(self, closures: _Closures, selection: Array, load: Array) -> Array:
         """Least-norm driving forces from the virtual motions that closures allow.
 
-        Extra coordinates without a drive are held: their own rows take no part.
+        The acceleration must have forces: that of extra coordinates without a drive, too.
         """
-        rows = np.array(passive_extra_rows(self.manipulator), dtype=int) - self.task
-        held = np.eye(self.model.nv)[np.array(self._extra, dtype=int)[rows]]
-        _, values, right = np.linalg.svd(np.vstack([closures.jacobian, held]))
+        _, values, right = np.linalg.svd(closures.jacobian)
         rank = int((values > _RCOND * values.max()).sum())
         motions = right[rank:]
         tau: Array = np.linalg.pinv(motions @ selection, rcond=_RCOND) @ (motions @ load)

@@ -72,6 +72,14 @@ STRUCTURES: dict[str, tuple[str, list[str]]] = {
     "planar, rigid at the platform": ("planar", ["Rz* Px Rz | rigid", "Rz Px* | R", "Rz* Rz | S"]),
     "planar, constrained": ("planar", ["Rz* Px | rigid", "Rz Px* | R", "Rz Rz | R"]),
     "planar, driven extra": ("planar", ["Rz* Rz+* Px | R", "Rz Px* | R", "Rz* Rz | R"]),
+    "passive extra coordinate held by a surplus drive": (
+        "spatial",
+        ["Rz* Ry* Ry* Ry+ | S", "Rz* Ry* Ry | S", "Rz* Ry* Ry | S"],
+    ),
+    "planar, two passive extra, one surplus drive": (
+        "planar",
+        ["Rz* Rz* Rz+ Rz+ | R", "Rz* Px* | R"],
+    ),
     "planar, passive extra": ("planar", ["Rz* Rz+ Px | R", "Rz Px* | R", "Rz* Rz | R"]),
     "point": ("point", ["Rz* Px | R", "Rz Pt* | R", "Rz* Rz | S"]),
     "point, driven extra": ("point", ["Rz* Px*+ Rz | R", "Rz Pt* | R"]),
