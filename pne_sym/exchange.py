@@ -18,7 +18,8 @@ def exchange(one: Path, other: Path) -> bool:
     function of its own.
 
     Args:
-        one, other: paths on the same file system; both exist.
+        one: a path that exists.
+        other: a path that exists on the same file system.
 
     Returns:
         Whether they have changed places.  False, with both as they were, where
