@@ -23,6 +23,14 @@ PYTEST_ARGS ?= -n 2 --dist loadfile --no-loadscope-reorder
 RANDOM_COUNT ?= 600
 RANDOM_SEED ?= 0
 
+# Hostile states for the generated C: how many, which draw, how compiled (tests/hostile/campaign.py).
+HOSTILE_STATES ?= 1000000
+HOSTILE_SEED ?= 0
+HOSTILE_BUILDS ?= fast,float,memory,thread
+
+# Models whose C Frama-C analyses.
+PROVED ?= fivebar_revolute planar_3rpr tripod_3rps stewart
+
 # --- for users ----------------------------------------------------------------
 
 .PHONY: help
@@ -56,7 +64,7 @@ gallery: $(VENV)/test.stamp ## Write docs/gallery.md and its pictures, from gene
 check: test check-rest ## Run all that CI runs
 
 .PHONY: check-rest
-check-rest: check-format check-lint check-types check-layers check-generated check-c check-math wheel-test ## Run all of check but the tests
+check-rest: check-format check-lint check-types check-layers check-generated check-c check-analysers check-math wheel-test ## Run all of check but the tests
 	@echo "check-rest: passed, but for what is reported as NOT RUN"
 
 .PHONY: check-format
@@ -83,6 +91,10 @@ check-generated: $(VENV)/core.stamp ## Is generated/ what would be generated (ma
 check-c: ## Compile the generated C with every warning on: gcc, clang, double, float, C++
 	$(or $(wildcard $(BIN)/python),$(PYTHON)) tests/tools/compile_c.py generated
 
+.PHONY: check-analysers
+check-analysers: ## Read a sample of the generated C with gcc -fanalyzer, clang, clang-tidy, cppcheck
+	$(or $(wildcard $(BIN)/python),$(PYTHON)) -m tests.tools.analyse_c generated --sample
+
 .PHONY: check-math
 check-math: ## Render every formula of the documents with KaTeX
 	@if command -v node npm >/dev/null; then $(MAKE) $(KATEX)/node_modules/installed.stamp \
@@ -100,6 +112,19 @@ fuzz: $(VENV)/test.stamp ## Give pne-gen 100,000 broken specifications (FUZZ_CAS
 .PHONY: random
 random: $(VENV)/test.stamp ## Derive RANDOM_COUNT (600) mechanisms drawn from RANDOM_SEED on, compare all
 	$(BIN)/python -m tests.random.tally --count $(RANDOM_COUNT) --seed $(RANDOM_SEED) --jobs 2
+
+.PHONY: analyse
+analyse: ## Read all generated C with the analysers (check-analysers reads a sample)
+	$(or $(wildcard $(BIN)/python),$(PYTHON)) -m tests.tools.analyse_c generated
+
+.PHONY: hostile
+hostile: ## Call the C with HOSTILE_STATES (1,000,000) hostile states a model and build, under MSan and TSan too
+	$(or $(wildcard $(BIN)/python),$(PYTHON)) -m tests.hostile.campaign generated \
+	  --states $(HOSTILE_STATES) --seed $(HOSTILE_SEED) --builds $(HOSTILE_BUILDS)
+
+.PHONY: prove
+prove: ## Prove with Frama-C that the C of PROVED has no run-time errors
+	$(or $(wildcard $(BIN)/python),$(PYTHON)) -m tests.tools.prove generated $(PROVED)
 
 .PHONY: schema
 schema: $(VENV)/core.stamp ## Write docs/pne_sym.schema.json

@@ -1,10 +1,11 @@
 """Writing a model's folder as a whole.
 
-A folder is written aside, forced to disk and swapped in by two renames.  At
-every instant either the old or the new folder is complete on disk: at its
-place, or, between the two renames only, beside it as `.NAME.pne-old`, from
-where the next run puts it back.  Files of the old folder that are not of a
-generation are in the new one too.
+A folder is written aside, forced to disk and exchanged with the old one in a
+single step: at every instant one of the two is in its place, complete.  Where
+the system has no such step there are two renames; between these only, the old
+folder is beside its place as `.NAME.pne-old`, from where the next run puts it
+back.  Files of the old folder that are not of a generation are in the new one
+too.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ import shutil
 import sys
 from collections.abc import Iterator, Mapping, Set
 from pathlib import Path
+
+from pne_sym.exchange import exchange
 
 if sys.platform != "win32":
     import fcntl
@@ -118,10 +121,12 @@ class _Place:
         self.old = folder.with_name(f".{folder.name}.pne-old")
 
     def swap(self) -> None:
-        """Put the new folder in the place of the old one."""
-        if self.folder.exists():
+        """Put the new folder in the place of the old one, which is left over beside it."""
+        if not self.folder.exists():
+            self.new.rename(self.folder)
+        elif not exchange(self.new, self.folder):
             self.folder.rename(self.old)
-        self.new.rename(self.folder)
+            self.new.rename(self.folder)
         _sync(self.folder.parent)
 
     def settle(self) -> None:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 PROGRAM = Path(sys.executable).with_name("pne-gen")
 STUB = Path(__file__).parent / "stub"
+HANG = 3600  # s; ends what hangs, and nothing that is only slow on a busy machine
 
 
 def environment(*, fault: str = "", real: bool = False, **variables: str) -> dict[str, str]:
@@ -37,7 +38,7 @@ def pne_gen(
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=120,
+        timeout=HANG,
         check=False,
     )
 
@@ -81,7 +82,7 @@ def on_a_terminal(*arguments: str | Path, **variables: str) -> tuple[int, str]:
             break
         shown += part
     os.close(master)
-    return process.wait(timeout=60), shown.decode()
+    return process.wait(timeout=HANG), shown.decode()
 
 
 def tree(folder: Path) -> dict[str, bytes]:

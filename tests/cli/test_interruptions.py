@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import PROGRAM, environment, heed_interrupts, pne_gen, start, tree
+from tests.cli.program import HANG, PROGRAM, environment, heed_interrupts, pne_gen, start, tree
 
 
 @pytest.fixture
@@ -25,7 +25,7 @@ def interrupt(out: Path, fault: str, marker: str) -> tuple[int, str]:
     assert process.stderr is not None
     assert process.stderr.readline() == f"{marker}\n"
     process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=HANG)
     return process.returncode, errors
 
 
@@ -53,7 +53,7 @@ def test_control_c_ends_the_worker_processes_too(tmp_path: Path) -> None:
     assert process.stderr is not None
     assert process.stderr.readline() == "compiling\n"
     os.killpg(process.pid, signal.SIGINT)
-    _, errors = process.communicate(timeout=30)
+    _, errors = process.communicate(timeout=HANG)
     assert process.returncode == 130
     assert errors.replace("compiling\n", "") == "pne-gen: error: interrupted\n"
     assert list(tmp_path.iterdir()) == []

@@ -59,10 +59,10 @@ def test_file_fault(tmp_path: Path, name: str, content: bytes | None, message: s
     path = tmp_path / name
     if content is not None:
         path.write_bytes(content)
-    start = time.perf_counter()
+    start = time.process_time()  # of this process: a busy machine does not count
     with pytest.raises(SpecError) as caught:
         read_spec(path)
-    assert time.perf_counter() - start < 5.0
+    assert time.process_time() - start < 5.0
     text = str(caught.value)
     assert text.startswith(f"{path}: ")
     assert message in text
@@ -91,10 +91,10 @@ def test_many_legs_that_do_not_close_are_refused_in_time() -> None:
     joint = {"kind": "R", "axis": "x", "offset": [0.01, 0.02, 0.03]}
     spec["legs"] = [spec["legs"][0] | {"joints": [joint] * 12}] * 24
     spec["home"]["q"] = [0.1] * (12 * 24)
-    start = time.perf_counter()
+    start = time.process_time()
     with pytest.raises(SpecError, match="loops do not close"):
         from_mapping(spec, "many.toml")
-    assert time.perf_counter() - start < 15.0
+    assert time.process_time() - start < 15.0
 
 
 WORDS: list[Any] = [

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.cli.program import PROGRAM, pne_gen
+from tests.cli.program import HANG, PROGRAM, pne_gen
 from tests.cli.test_diff import git, heavier
 from tests.cli.test_generate import own_spec
 
@@ -31,7 +31,7 @@ def shell(command: str, folder: Path, **variables: str) -> subprocess.CompletedP
         env={**os.environ, "PATH": path, **identity, **variables},
         capture_output=True,
         text=True,
-        timeout=300,
+        timeout=HANG,
         check=False,
     )
 

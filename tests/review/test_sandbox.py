@@ -64,13 +64,11 @@ def test_nothing_of_the_callers_environment(
     ],
 )
 def test_limits(isolation: Isolation, code: str, reason: str) -> None:
-    started = time.monotonic()
     limits = SHORT if reason.startswith("took") else LIMITS
     with workplace(isolation) as place, pytest.raises(SandboxError) as caught:
         run(place, code, limits)
     assert reason in str(caught.value)
     assert len(str(caught.value)) < 300
-    assert time.monotonic() - started < limits.seconds + 30.0
 
 
 def beats(file: Path) -> bool:

@@ -254,6 +254,13 @@ def test_read_only_folders_are_removed_too(tmp_path: Path) -> None:
 # --- failures and interruptions at every step ---------------------------------------
 
 
+@pytest.fixture(params=["one step", "two renames"])
+def swap(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The folder is put in its place in either way."""
+    if request.param == "two renames":
+        monkeypatch.setattr(writer, "exchange", lambda *_: False)
+
+
 class Saboteur:
     """Lets the n-th step that changes the disk fail, before or after it is done."""
 
@@ -267,6 +274,7 @@ class Saboteur:
             (Path, "open"),
             (os, "fsync"),
             (Path, "rename"),
+            (writer, "exchange"),
             (os, "link"),
             (writer.shutil, "rmtree"),
         ):
@@ -301,7 +309,7 @@ ERRORS = [KeyboardInterrupt(), OSError(errno.ENOSPC, "No space left on device")]
 @pytest.mark.parametrize("after", [False, True])
 @pytest.mark.parametrize("error", ERRORS, ids=["interrupted", "disk full"])
 def test_whatever_step_fails_a_whole_folder_is_there(
-    error: BaseException, after: bool, tmp_path: Path
+    swap: None, error: BaseException, after: bool, tmp_path: Path
 ) -> None:
     for at in range(1, 100):
         out = tmp_path / str(at)
@@ -322,7 +330,7 @@ def test_whatever_step_fails_a_whole_folder_is_there(
 @pytest.mark.parametrize("after", [False, True])
 @pytest.mark.parametrize("error", ERRORS, ids=["interrupted", "disk full"])
 def test_whatever_step_fails_the_user_s_files_are_there(
-    error: BaseException, after: bool, tmp_path: Path
+    swap: None, error: BaseException, after: bool, tmp_path: Path
 ) -> None:
     for at in range(1, 100):
         out = tmp_path / str(at)
@@ -338,7 +346,9 @@ def test_whatever_step_fails_the_user_s_files_are_there(
 
 
 @pytest.mark.parametrize("error", ERRORS, ids=["interrupted", "disk full"])
-def test_what_fails_before_the_swap_leaves_no_trace(error: BaseException, tmp_path: Path) -> None:
+def test_what_fails_before_the_swap_leaves_no_trace(
+    swap: None, error: BaseException, tmp_path: Path
+) -> None:
     write_model(tmp_path, "robot", OLD)
     before = content(tmp_path)
     steps = 3 * len(NEW)  # creating the folder, then opening and forcing each file

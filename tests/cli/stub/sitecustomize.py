@@ -4,6 +4,7 @@ The stub stands for `pne_sym.pipeline`, so that a test of the command line
 takes no longer than it must; `PNE_TEST_FAULT` names what is to go wrong.
 """
 
+import ctypes
 import errno
 import os
 import sys
@@ -12,6 +13,7 @@ import types
 import warnings
 
 FAULT = os.environ.get("PNE_TEST_FAULT", "")
+LONG = 7200  # s; longer than a test waits for the program to be interrupted, on any machine
 
 
 def compile_model(manipulator):
@@ -26,7 +28,7 @@ def compile_model(manipulator):
         warnings.warn(SpecWarning(f"{name}: unusual inertia"), stacklevel=1)
     if FAULT == "slow compile":
         print("compiling", file=sys.stderr, flush=True)
-        time.sleep(60)
+        time.sleep(LONG)
     version = os.environ.get("PNE_TEST_VERSION", "1")
     return {
         "__init__.py": f"from .{name} import *\n",
@@ -38,11 +40,15 @@ def compile_model(manipulator):
 
 def slow_sync(descriptor):
     print("writing", file=sys.stderr, flush=True)
-    time.sleep(60)
+    time.sleep(LONG)
 
 
 def full_disk(descriptor):
     raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+
+def no_library(name):
+    raise OSError("no shared C library")
 
 
 def dying_rename(source, target, *args, **kwargs):
@@ -62,3 +68,4 @@ if FAULT == "full disk":
     os.fsync = full_disk
 if FAULT == "crash between renames":
     os.rename = dying_rename
+    ctypes.CDLL = no_library  # so that folders are replaced by two renames

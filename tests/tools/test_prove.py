@@ -1,0 +1,133 @@
+"""The proofs' alarms are read, explained or failed."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.hostile.interface import read_header
+from tests.tools import prove
+from tests.tools.prove import Alarm
+
+REPOSITORY = Path(__file__).parents[2]
+FOLDER = REPOSITORY / "generated/fivebar_revolute"
+LOG = """[eva] Analyzing a complete application starting at main
+[eva:alarm] /x/arm.c:12: Warning: 
+  out of bounds read. assert \\valid_read(a + i);
+[eva:loop-unroll:auto] /x/arm.c:13: Automatic loop unrolling.
+[eva:alarm] driver.c:7: Warning: 
+  accessing uninitialized left-value.
+  assert
+  \\initialized(x + i);
+[eva:alarm] /x/arm.c:30: Warning: assertion got status unknown.
+[eva:alarm] /x/arm.c:139: Warning: 
+  non-finite float value. assert \\is_finite((float)NAN);
+[eva] done for function main
+"""  # noqa: W291
+
+
+def test_every_alarm_is_read() -> None:
+    assert prove.alarms(LOG) == [
+        Alarm(7, "accessing uninitialized left-value. assert \\initialized(x + i);"),
+        Alarm(12, "out of bounds read. assert \\valid_read(a + i);"),
+        Alarm(30, "assertion got status unknown."),
+        Alarm(139, "non-finite float value. assert \\is_finite((float)NAN);"),
+    ]
+
+
+def test_what_is_explained_holds_for_one_analysis() -> None:
+    found = prove.alarms(LOG)
+    assert [alarm.line for alarm in prove.unexplained("numbers", found)] == [7, 12, 30]
+    assert [alarm.line for alarm in prove.unexplained("safety", found)] == [7, 12, 30, 139]
+
+
+def test_explanations_are_sentences() -> None:
+    assert all(len(reason.split()) > 5 for reason in prove.EXPLAINED.values())
+
+
+@pytest.mark.parametrize("analysis", ["safety", "numbers"])
+def test_the_driver_calls_every_function_in_both_ways(analysis: str, tmp_path: Path) -> None:
+    model = read_header(FOLDER / "fivebar_revolute.h")
+    text = prove.driver(model, analysis)
+    left_out = prove.ITERATED if analysis == "numbers" else ()
+    for function in model.functions:
+        for call in (f"{model.name}_{function.name}(", f"{model.name}_{function.name}_batch("):
+            assert (call in text) == (function.name not in left_out)
+    (tmp_path / "__fc_builtin.h").write_text(
+        "void Frama_C_make_unknown(char *p, unsigned long n);\n"
+        "double Frama_C_double_interval(double low, double high);\n"
+    )
+    (tmp_path / "driver.c").write_text(text)
+    command = ["gcc", "-std=c99", "-Wall", "-Wextra", "-Werror", "-fsyntax-only"]
+    subprocess.run([*command, f"-I{FOLDER}", f"-I{tmp_path}", tmp_path / "driver.c"], check=True)
+
+
+@pytest.mark.parametrize(("ci", "code"), [("true", 1), ("", 0)])
+def test_without_frama_c_nothing_is_proved(
+    ci: str, code: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(prove.shutil, "which", lambda _: None)
+    monkeypatch.setenv("CI", ci)
+    assert prove.main([str(FOLDER.parent), "fivebar_revolute"]) == code
+    assert "*** NOT RUN: prove" in capsys.readouterr().err
+
+
+ARM_H = """/* The arm.
+ * X: x
+ */
+#include <stddef.h>
+#define ARM_NQ 1
+typedef double arm_real;
+typedef struct { arm_real mass; } arm_params;
+typedef struct { arm_real mass; } arm_model;
+extern const arm_params arm_default_params;
+extern const arm_real arm_HOME_X[ARM_NQ];
+int arm_prepare(const arm_params *params, arm_model *model);
+/* Weight. In: X (NQ). Out: weight (NQ). */
+int arm_weight(const arm_model *model, const arm_real *X, arm_real *weight);
+size_t arm_weight_batch(const arm_model *model, size_t n, const arm_real *X, arm_real *weight,
+    int *status);
+"""
+ARM_C = """#include "arm.h"
+const arm_params arm_default_params = {1};
+const arm_real arm_HOME_X[ARM_NQ] = {1};
+int arm_prepare(const arm_params *params, arm_model *model)
+{
+    model->mass = params->mass;
+    return 0;
+}
+int arm_weight(const arm_model *model, const arm_real *X, arm_real *weight)
+{
+    weight[0] = model->mass*X[0];
+    return 0;
+}
+size_t arm_weight_batch(const arm_model *model, size_t n, const arm_real *X, arm_real *weight,
+    int *status)
+{
+    for (size_t i = 0; i < n; ++i) {
+        status[i] = arm_weight(model, X + i, weight + i);
+    }
+    return 0;
+}
+"""
+
+
+@pytest.mark.skipif(shutil.which("frama-c") is None, reason="frama-c is not installed")
+@pytest.mark.parametrize(
+    ("old", "new", "code"),
+    [
+        ("", "", 0),
+        ("X[0];", "X[1];", 1),
+        ("i < n;", "i <= n;", 1),
+        ("model->mass = params->mass;", "", 1),
+        ("X[0];", "X[0]/(X[0] - 1);", 1),
+    ],
+)
+def test_faults_are_alarms(old: str, new: str, code: int, tmp_path: Path) -> None:
+    (tmp_path / "arm").mkdir()
+    (tmp_path / "arm/arm.h").write_text(ARM_H)
+    (tmp_path / "arm/arm.c").write_text(ARM_C.replace(old, new) if old else ARM_C)
+    assert prove.main([str(tmp_path), "arm"]) == code
