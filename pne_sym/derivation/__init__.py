@@ -20,7 +20,7 @@ from pne_sym.derivation.equation import (
     Trouble,
     names_in,
 )
-from pne_sym.derivation.parameters import ParameterField, ParameterTable
+from pne_sym.derivation.parameters import ParameterField, ParameterTable, Rule
 
 __all__ = [
     "PLATFORM",
@@ -41,6 +41,7 @@ __all__ = [
     "Quantity",
     "ReciprocalBasis",
     "Role",
+    "Rule",
     "Trouble",
     "names_in",
 ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +10,24 @@ import sympy as sp
 from numpy.typing import NDArray
 
 _AXES = "xyz"
+
+
+class Rule(enum.StrEnum):
+    """What the values of a parameter must be, beyond finite: as the reader demands of a spec."""
+
+    FREE = "free"
+    MASS = "mass"
+    """Not negative."""
+    INERTIA = "inertia"
+    """Symmetric, and without negative principal moments."""
+    PLANAR_INERTIA = "planar_inertia"
+    """izz not negative; other entries do not count."""
+    ROTATION = "rotation"
+    """Orthonormal rows, determinant +1."""
+    PLANAR_ROTATION = "planar_rotation"
+    """A rotation about z."""
+    UNIT = "unit"
+    """Of length 1."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +43,7 @@ class ParameterField:
         paths: where it stands in the full form, one path per leg.
         default: values of the specification, (legs,) + shape or shape.
         zeros: flat indices (of one leg's entry) that are zero by structure.
+        rule: what its values must be.
     """
 
     name: str
@@ -34,6 +54,7 @@ class ParameterField:
     paths: tuple[str, ...]
     default: NDArray[np.float64]
     zeros: tuple[int, ...] = ()
+    rule: Rule = Rule.FREE
 
     @property
     def size(self) -> int:

@@ -19,7 +19,7 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
+from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity, Rule
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
 from pne_sym.model.kinematics import rotation_about
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
@@ -202,8 +202,9 @@ class _Builder:
         meaning: str,
         path: str,
         pick: Any,
-        zeros: tuple[int, ...] = (),
+        **facts: Any,
     ) -> tuple[sp.Expr, ...]:
+        """A live parameter over the legs of the type; facts: its zeros and its rule."""
         paths = tuple(f"legs[{i}].{path}" for i in self.type.indices)
         return self.book.parameters.add(
             ParameterField(
@@ -214,7 +215,7 @@ class _Builder:
                 meaning,
                 paths,
                 self.type.over_legs(pick),
-                zeros,
+                **facts,
             )
         )
 
@@ -225,6 +226,10 @@ class _Builder:
         quantity = Quantity(symbol.name, latex, meaning, unit, frame, parameter=True)
         return self.book.give(symbol, frame, components, quantity)
 
+    def _turned(self) -> Rule:
+        """What a frame must be."""
+        return Rule.PLANAR_ROTATION if self.planar else Rule.ROTATION
+
     def points(self) -> None:
         flat = (2,) if self.planar else ()
         b = self.field(
@@ -234,7 +239,7 @@ class _Builder:
             "base point, base frame",
             "base_point",
             lambda leg: leg.base_point,
-            flat,
+            zeros=flat,
         )
         frame = self.field(
             "base_frame",
@@ -243,6 +248,7 @@ class _Builder:
             "rotation from leg axes to base axes",
             "base_frame",
             lambda leg: leg.base_frame,
+            rule=self._turned(),
         )
         p = self.field(
             "platform_point",
@@ -251,7 +257,7 @@ class _Builder:
             "platform joint, platform frame",
             "platform_point",
             lambda leg: leg.platform_point,
-            flat,
+            zeros=flat,
         )
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
@@ -279,7 +285,8 @@ class _Builder:
                     f"axis of joint {j}, preceding link's frame",
                     f"joints[{j - 1}].axis",
                     lambda leg, j=j: leg.joints[j - 1].axis,
-                    (2,) if self.planar else (),
+                    zeros=(2,) if self.planar else (),
+                    rule=Rule.UNIT,
                 )
             if joint.kind is JointKind.HELICAL:
                 (g.pitch[j],) = self.field(
@@ -333,7 +340,7 @@ class _Builder:
                 lambda leg, j=j: (*(x.offset for x in leg.joints), leg.platform_joint.offset)[
                     j - 1
                 ],
-                zeros,
+                zeros=zeros,
             )
             self.g.offset[j] = self.give(
                 f"d_{j}",
@@ -628,6 +635,7 @@ class _Builder:
                 "platform axes in the last link's frame",
                 "platform_joint.rotation",
                 lambda leg: leg.platform_joint.rotation,
+                rule=self._turned(),
             )
             for k in range(3):
                 i = (k + 1) % 3
@@ -690,6 +698,7 @@ class _Builder:
             f"{name} of the platform joint",
             f"platform_joint.{name}",
             lambda leg: getattr(leg.platform_joint, name),
+            rule=Rule.UNIT,
         )
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:
