@@ -145,4 +145,13 @@ def parameter_checks(bundle: Bundle) -> list[str]:
         lines.append(f"ok &= all_within({first}, {count * size});")
         lines += [f"ok &= all_zero({first} + {k}, {count}, {size});" for k in f.zeros]
         lines += [f"ok &= {check}({first}, {count});" for check in _CHECKS[f.rule]]
+    for n, relation in enumerate(bundle.derivation.parameters.relations):
+        count, other, step = bundle.leg_counts[relation.leg_type], f"fixed_{n}", 0
+        if isinstance(relation.second, str):
+            other, step = f"&p->{relation.second}[0][0]", 3
+        else:
+            values = ", ".join(map(str, relation.second))
+            lines.append(f"static const real fixed_{n}[] = {{{values}}};")
+        first = f"&p->{relation.first}[0][0]"
+        lines.append(f"ok &= all_at_angle({first}, {other}, {step}, {count}, {relation.cosine});")
     return lines

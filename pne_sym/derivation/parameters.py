@@ -62,6 +62,23 @@ class ParameterField:
         return int(np.prod(self.shape, dtype=int))
 
 
+@dataclass(frozen=True)
+class AxisRelation:
+    """Axes of a leg that are perpendicular or parallel by structure: live ones must stay so.
+
+    Attributes:
+        leg_type: whose legs' axes these are.
+        first: name of the field of an axis.
+        second: that of the other, or its components where these are fixed.
+        cosine: 0, 1 or -1.
+    """
+
+    leg_type: str
+    first: str
+    second: str | tuple[int, ...]
+    cosine: int
+
+
 @dataclass
 class ParameterTable:
     """All fields, and which symbol is which entry.
@@ -70,11 +87,13 @@ class ParameterTable:
         fields: in the order of the generated structure.
         entries: symbol name -> (field, flat index).
         branches: symbol name -> sign (+1 or -1) per leg; fixed at generation.
+        relations: between live axes, and between these and fixed ones.
     """
 
     fields: list[ParameterField] = field(default_factory=list)
     entries: dict[str, tuple[ParameterField, int]] = field(default_factory=dict)
     branches: dict[str, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
+    relations: list[AxisRelation] = field(default_factory=list)
 
     def add(self, parameter: ParameterField) -> tuple[sp.Expr, ...]:
         """Add a field; returns its entries' symbols, zeros where the structure says so."""

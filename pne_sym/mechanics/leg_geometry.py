@@ -20,6 +20,7 @@ import sympy as sp
 from numpy.typing import NDArray
 
 from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity, Rule
+from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
 from pne_sym.model.kinematics import rotation_about
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
@@ -300,6 +301,7 @@ class _Builder:
             group = j if g.turns(j) else group
             g.group[j] = group
         g.axes_at = [self._axes_with(extra) for extra in self._extra_draws()]
+        self.book.parameters.relations.extend(axis_relations(self.type))
 
     def _extra_draws(self) -> list[dict[int, float]]:
         extras = [j for j in range(1, self.g.count + 1) if self.g.is_extra(j) and self.g.turns(j)]
