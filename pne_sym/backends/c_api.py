@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described
+from pne_sym.model.values import ROUNDING
 from pne_sym.program.count import count_function
 
 
@@ -236,7 +237,8 @@ def _helpers(d: Described) -> list[Api]:
         Api("rotation", "base_R_platform; a quaternion need not be normalised.", (v["X"],), (R,)),
         Api(
             "pose",
-            f"X of the platform at origin t with rotation matrix R{zero}.",
+            f"X of the platform at origin t with rotation matrix R{zero}.  INVALID where R has not "
+            f"orthonormal rows, to {ROUNDING:g} (float: 1e-5), and determinant +1.",
             (t, R),
             (v["X"],),
         ),

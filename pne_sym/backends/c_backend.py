@@ -46,6 +46,7 @@ class CView:
         prototypes, definitions: lines of every public function.
         defaults, home_x, home_q: initialisers.
         checks, prepare: statements of the preparation.
+        has_relations: whether live axes must keep right angles or directions.
         closures: legs whose displacements are found by iteration.
         extra_joints, turning_joints: positions in q of the extra coordinates, and of the
             displacements found by iteration that are angles.
@@ -71,6 +72,7 @@ class CView:
     home_x: str
     home_q: str
     checks: tuple[str, ...]
+    has_relations: bool
     prepare: tuple[str, ...]
     closures: tuple[CClosure, ...]
     extra_joints: tuple[int, ...]
@@ -123,6 +125,7 @@ class CBackend:
             home_x=", ".join(f"R({v})" for v in c.home[0]),
             home_q=", ".join(f"R({v})" for v in c.home[1]),
             checks=tuple(parameter_checks(bundle)),
+            has_relations=bool(bundle.derivation.parameters.relations),
             prepare=tuple(prepare_body(bundle)),
             closures=closures,
             extra_joints=tuple(joint for joint, _ in bundle.program.given),

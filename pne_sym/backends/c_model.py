@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import sympy as sp
+import math
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_parts import statements
 from pne_sym.backends.c_text import CPrinter, c_name, comment, indented, listing, statement
-from pne_sym.backends.describe import FieldView, equation_titles, field_views
-from pne_sym.derivation import ParameterField
+from pne_sym.backends.describe import equation_titles, field_views
+from pne_sym.derivation import ParameterField, Rule
 from pne_sym.program.ir import Block
 from pne_sym.program.slices import symbols
 
@@ -124,27 +124,34 @@ def prepare_body(bundle: Bundle) -> list[str]:
 # ---- checks ---------------------------------------------------------------------------------
 
 
+_CHECKS: dict[Rule, tuple[str, ...]] = {
+    Rule.FREE: (),
+    Rule.MASS: ("none_negative",),
+    Rule.UNIT: ("all_unit",),
+    Rule.INERTIA: ("all_inertias",),
+    Rule.PLANAR_INERTIA: ("all_planar_inertias",),
+    Rule.ROTATION: ("all_rotations",),
+    Rule.PLANAR_ROTATION: ("all_rotations", "all_about_z"),
+}
+"""What a parameter must be -> functions that check it."""
+
+
 def parameter_checks(bundle: Bundle) -> list[str]:
     """Conditions that the parameters must satisfy, one per line."""
     lines = []
     for f in field_views(bundle):
         first = "&p->" + f.name + "[0]" * len(f.shape)
-        core = f.shape[1:] if f.per_leg else f.shape
-        count, size = (f.shape[0] if f.per_leg else 1), int(sp.prod(core))
-        lines.append(f"ok &= all_finite({first}, {count * size});")
+        count, size = (f.shape[0] if f.per_leg else 1), math.prod(f.core)
+        lines.append(f"ok &= all_within({first}, {count * size});")
         lines += [f"ok &= all_zero({first} + {k}, {count}, {size});" for k in f.zeros]
-        lines += _rule(f, first, count, planar=bundle.coordinates.planar)
+        lines += [f"ok &= {check}({first}, {count});" for check in _CHECKS[f.rule]]
+    for n, relation in enumerate(bundle.derivation.parameters.relations):
+        count, other, step = bundle.leg_counts[relation.leg_type], f"fixed_{n}", 0
+        if isinstance(relation.second, str):
+            other, step = f"&p->{relation.second}[0][0]", 3
+        else:
+            values = ", ".join(map(str, relation.second))
+            lines.append(f"static const real fixed_{n}[] = {{{values}}};")
+        first = f"&p->{relation.first}[0][0]"
+        lines.append(f"ok &= all_at_angle({first}, {other}, {step}, {count}, {relation.cosine});")
     return lines
-
-
-def _rule(f: FieldView, first: str, count: int, *, planar: bool) -> list[str]:
-    if f.rule == "mass":
-        return [f"ok &= none_negative({first}, {count});"]
-    if f.rule == "unit":
-        return [f"ok &= all_unit({first}, {count});"]
-    if f.rule == "inertia":
-        return [f"ok &= all_symmetric({first}, {count});"]
-    if f.rule == "rotation":
-        about = [f"ok &= all_about_z({first}, {count});"] if planar else []
-        return [f"ok &= all_rotations({first}, {count});", *about]
-    return []

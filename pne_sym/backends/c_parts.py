@@ -259,8 +259,12 @@ def _flags(checks: Iterable[Check], printer: CPrinter, target: str, operator: st
         if check.trouble == "singular":
             tolerance = "TOLERANCE*TOLERANCE" if check.power == 2 else "TOLERANCE"
             condition = f"magnitude({value}) > {tolerance}*{printer.text(check.scale)}"
+        elif check.trouble == "invalid":
+            # apart, as loops with conditions on conditions do not run in lanes
+            parts.setdefault("invalid", []).append(f"is_finite({value})")
+            condition = f"{value} > 0"
         else:
-            condition = f"{value} {'>' if check.trouble == 'invalid' else '>='} 0"
+            condition = f"{value} >= 0"
         parts.setdefault(str(check.trouble), []).append(condition)
     lines = []
     for trouble, conditions in parts.items():

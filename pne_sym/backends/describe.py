@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.derivation import Actuation, Coordinates, Derivation, ParameterField
+from pne_sym.derivation import Actuation, Coordinates, Derivation, ParameterField, Rule
 from pne_sym.program.count import count_function
 
 
@@ -18,7 +18,7 @@ class FieldView:
         shape: with the legs first, such as (6, 3).
         rows: default values, one text per leg (or one in all).
         zeros: flat indices that are zero by structure.
-        rule: what its values must satisfy: "rotation", "inertia", "mass", "unit" or "".
+        rule: what its values must be.
         per_leg: whether the first index runs over the legs of a type.
     """
 
@@ -28,8 +28,13 @@ class FieldView:
     shape: tuple[int, ...]
     rows: tuple[str, ...]
     zeros: tuple[int, ...]
-    rule: str
+    rule: Rule
     per_leg: bool
+
+    @property
+    def core(self) -> tuple[int, ...]:
+        """The shape of one leg's entry, or of the whole."""
+        return self.shape[1:] if self.per_leg else self.shape
 
     @property
     def shape_text(self) -> str:
@@ -173,18 +178,8 @@ def _field(f: ParameterField) -> FieldView:
     rows = [_literal(row) for row in f.default] if f.leg_type else [_literal(f.default)]
     shape = (len(f.default), *f.shape) if f.leg_type else f.shape
     return FieldView(
-        f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, _rule(f), f.leg_type is not None
+        f.name, f.unit, f.meaning, shape, tuple(rows), f.zeros, f.rule, f.leg_type is not None
     )
-
-
-def _rule(f: ParameterField) -> str:
-    if f.name.endswith(("_base_frame", "_platform_joint_rotation")):
-        return "rotation"
-    if f.name.endswith("_inertia"):
-        return "inertia"
-    if f.name.endswith("_mass") and not f.shape:
-        return "mass"
-    return "unit" if f.name.endswith(("_axis", "_axis_link", "_axis_platform")) else ""
 
 
 def _literal(value: object) -> str:

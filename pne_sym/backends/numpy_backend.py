@@ -15,7 +15,7 @@ from pne_sym.backends.describe import (
 from pne_sym.backends.numpy_parts import Parts
 from pne_sym.backends.numpy_text import PythonText
 from pne_sym.backends.templating import render
-from pne_sym.derivation import LegTypeInfo
+from pne_sym.derivation import AxisRelation, LegTypeInfo
 from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
 
@@ -26,6 +26,7 @@ class ModuleView:
 
     described: Described
     fields: tuple[FieldView, ...]
+    relations: tuple[AxisRelation, ...]
     defaults: tuple[str, ...]
     legs: tuple[LegTypeInfo, ...]
     driven_joints: tuple[int, ...]
@@ -62,6 +63,7 @@ class NumpyBackend:
         return ModuleView(
             describe(bundle),
             fields,
+            tuple(bundle.derivation.parameters.relations),
             tuple(line for f in fields for line in _default_lines(f)),
             bundle.derivation.leg_types,
             driven,

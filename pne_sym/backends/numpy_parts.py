@@ -70,7 +70,9 @@ class Parts:
         )
 
     def _input_checks(self, checks: list[Any]) -> str:
-        parts = [f"({c.value} > 0.0)" for c in checks if c.trouble == "invalid"]
+        parts = [
+            f"({c.value} > 0.0) & ({c.value} < np.inf)" for c in checks if c.trouble == "invalid"
+        ]
         rest = [c for c in checks if c.trouble != "invalid"]
         if rest:
             parts.append(self.w.checks(rest))

@@ -7,6 +7,17 @@ from pathlib import Path
 
 import jinja2
 
+from pne_sym.model.body import RELATIVE
+from pne_sym.model.values import LARGEST, ROUNDING, SNAP
+
+LIMITS = {
+    "largest": f"{LARGEST:g}",
+    "relative": f"{RELATIVE:g}",
+    "rounding": f"{ROUNDING:g}",
+    "snap": f"{SNAP:g}",
+}
+"""What the reader of specifications allows, for the checks of parameters at run time."""
+
 
 def template_folder() -> Path:
     """The templates beside the package (wheel) or at the top of the checkout.
@@ -24,7 +35,7 @@ def template_folder() -> Path:
 @cache
 def environment() -> jinja2.Environment:
     """Strict about undefined names; no autoescape, as no output is HTML."""
-    return jinja2.Environment(
+    made = jinja2.Environment(
         loader=jinja2.FileSystemLoader(template_folder()),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
@@ -32,6 +43,8 @@ def environment() -> jinja2.Environment:
         keep_trailing_newline=True,
         autoescape=False,  # noqa: S701
     )
+    made.globals["limits"] = LIMITS
+    return made
 
 
 def render(template: str, **fields: object) -> str:

@@ -20,11 +20,12 @@ from pne_sym.derivation.equation import (
     Trouble,
     names_in,
 )
-from pne_sym.derivation.parameters import ParameterField, ParameterTable
+from pne_sym.derivation.parameters import AxisRelation, ParameterField, ParameterTable, Rule
 
 __all__ = [
     "PLATFORM",
     "Actuation",
+    "AxisRelation",
     "Book",
     "Chapter",
     "Condition",
@@ -41,6 +42,7 @@ __all__ = [
     "Quantity",
     "ReciprocalBasis",
     "Role",
+    "Rule",
     "Trouble",
     "names_in",
 ]

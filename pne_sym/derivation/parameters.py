@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import enum
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -9,6 +10,24 @@ import sympy as sp
 from numpy.typing import NDArray
 
 _AXES = "xyz"
+
+
+class Rule(enum.StrEnum):
+    """What the values of a parameter must be, beyond finite: as the reader demands of a spec."""
+
+    FREE = "free"
+    MASS = "mass"
+    """Not negative."""
+    INERTIA = "inertia"
+    """Symmetric, and without negative principal moments."""
+    PLANAR_INERTIA = "planar_inertia"
+    """izz not negative; other entries do not count."""
+    ROTATION = "rotation"
+    """Orthonormal rows, determinant +1."""
+    PLANAR_ROTATION = "planar_rotation"
+    """A rotation about z."""
+    UNIT = "unit"
+    """Of length 1."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +43,7 @@ class ParameterField:
         paths: where it stands in the full form, one path per leg.
         default: values of the specification, (legs,) + shape or shape.
         zeros: flat indices (of one leg's entry) that are zero by structure.
+        rule: what its values must be.
     """
 
     name: str
@@ -34,11 +54,29 @@ class ParameterField:
     paths: tuple[str, ...]
     default: NDArray[np.float64]
     zeros: tuple[int, ...] = ()
+    rule: Rule = Rule.FREE
 
     @property
     def size(self) -> int:
         """Number of entries of one leg (or of the whole)."""
         return int(np.prod(self.shape, dtype=int))
+
+
+@dataclass(frozen=True)
+class AxisRelation:
+    """Axes of a leg that are perpendicular or parallel by structure: live ones must stay so.
+
+    Attributes:
+        leg_type: whose legs' axes these are.
+        first: name of the field of an axis.
+        second: that of the other, or its components where these are fixed.
+        cosine: 0, 1 or -1.
+    """
+
+    leg_type: str
+    first: str
+    second: str | tuple[int, ...]
+    cosine: int
 
 
 @dataclass
@@ -49,11 +87,13 @@ class ParameterTable:
         fields: in the order of the generated structure.
         entries: symbol name -> (field, flat index).
         branches: symbol name -> sign (+1 or -1) per leg; fixed at generation.
+        relations: between live axes, and between these and fixed ones.
     """
 
     fields: list[ParameterField] = field(default_factory=list)
     entries: dict[str, tuple[ParameterField, int]] = field(default_factory=dict)
     branches: dict[str, tuple[str, tuple[int, ...]]] = field(default_factory=dict)
+    relations: list[AxisRelation] = field(default_factory=list)
 
     def add(self, parameter: ParameterField) -> tuple[sp.Expr, ...]:
         """Add a field; returns its entries' symbols, zeros where the structure says so."""

@@ -72,7 +72,7 @@ def _pose(derivation: Derivation) -> tuple[list[Assignment], list[Check]]:
 def _quaternion(first: int, rotation: tuple[Any, ...]) -> tuple[list[Assignment], list[Check]]:
     """Rotation matrix of a quaternion of any length other than zero.
 
-    A squared length that overflows leaves nothing of the scale: that is checked too.
+    The scale is zero where the squared length overflows, and not finite where that is too small.
     """
     x, y, z, w = (entry("X", first + k) for k in range(4))
     n, s = _symbol("quaternion_norm2"), _symbol("quaternion_scale")
@@ -105,7 +105,7 @@ def _quaternion(first: int, rotation: tuple[Any, ...]) -> tuple[list[Assignment]
     )
     values = (value for row in rows for value in row)
     made += [Assignment(r, value, "X") for r, value in zip(rotation, values, strict=True)]
-    return made, [Check("invalid", value, sp.S.One, 2, "X") for value in (n, s)]
+    return made, [Check("invalid", s, sp.S.One, 2, "X")]
 
 
 def leg_inputs(derivation: Derivation, name: str) -> tuple[str, tuple[int, ...]]:

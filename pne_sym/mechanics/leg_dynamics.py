@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import Book, Law, ParameterField, Quantity, Role
+from pne_sym.derivation import Book, Law, ParameterField, Quantity, Role, Rule
 from pne_sym.mechanics.composite import CompositeWriter
 from pne_sym.mechanics.leg_geometry import LegGeometry
 from pne_sym.mechanics.leg_motion import MotionWriter
@@ -150,10 +150,11 @@ def _body(book: Book, g: LegGeometry, j: int, *, at_tip: bool, planar: bool) -> 
 def _link_parameters(book: Book, g: LegGeometry, j: int, *, planar: bool) -> tuple[Any, Any, Any]:
     """Mass, centre of mass and inertia tensor of link j, as its specification has them."""
     frame = g.frame("spec", g.group[j])
-    (mass,) = _link_field(book, g, j, "mass")
+    (mass,) = _link_field(book, g, j, "mass", rule=Rule.MASS)
     book.note_quantity(Quantity(mass.name, f"m_{{{j}}}", f"mass of link {j}", "kg", parameter=True))
     centre = _link_field(book, g, j, "centre_of_mass", (2,) if planar else ())
-    entries = _link_field(book, g, j, "inertia")
+    rule = Rule.PLANAR_INERTIA if planar else Rule.INERTIA
+    entries = _link_field(book, g, j, "inertia", rule=rule)
     rho = g.name(f"rho_{j}")
     rho_quantity = Quantity(
         rho,
@@ -190,7 +191,12 @@ _LINK_FIELDS: dict[str, tuple[tuple[int, ...], str, str]] = {
 
 
 def _link_field(
-    book: Book, g: LegGeometry, j: int, field_name: str, zeros: tuple[int, ...] = ()
+    book: Book,
+    g: LegGeometry,
+    j: int,
+    field_name: str,
+    zeros: tuple[int, ...] = (),
+    rule: Rule = Rule.FREE,
 ) -> tuple[Any, ...]:
     """A live parameter of link j: symbols of its entries."""
     legs, (shape, unit, meaning) = g.leg_type, _LINK_FIELDS[field_name]
@@ -204,6 +210,7 @@ def _link_field(
             tuple(f"legs[{i}].joints[{j - 1}].link.{field_name}" for i in legs.indices),
             np.asarray(legs.over_legs(lambda leg: getattr(leg.joints[j - 1].link, field_name))),
             zeros,
+            rule,
         )
     )
 

@@ -19,7 +19,8 @@ import numpy as np
 import sympy as sp
 from numpy.typing import NDArray
 
-from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity
+from pne_sym.derivation import Book, Frame, Law, ParameterField, Quantity, Rule
+from pne_sym.mechanics.axis_relations import axis_relations
 from pne_sym.mechanics.structure import TOLERANCE, LegType, is_coordinate
 from pne_sym.model.kinematics import rotation_about
 from pne_sym.model.manipulator import JointKind, PlatformJointKind
@@ -202,8 +203,9 @@ class _Builder:
         meaning: str,
         path: str,
         pick: Any,
-        zeros: tuple[int, ...] = (),
+        **facts: Any,
     ) -> tuple[sp.Expr, ...]:
+        """A live parameter over the legs of the type; facts: its zeros and its rule."""
         paths = tuple(f"legs[{i}].{path}" for i in self.type.indices)
         return self.book.parameters.add(
             ParameterField(
@@ -214,7 +216,7 @@ class _Builder:
                 meaning,
                 paths,
                 self.type.over_legs(pick),
-                zeros,
+                **facts,
             )
         )
 
@@ -225,6 +227,10 @@ class _Builder:
         quantity = Quantity(symbol.name, latex, meaning, unit, frame, parameter=True)
         return self.book.give(symbol, frame, components, quantity)
 
+    def _turned(self) -> Rule:
+        """What a frame must be."""
+        return Rule.PLANAR_ROTATION if self.planar else Rule.ROTATION
+
     def points(self) -> None:
         flat = (2,) if self.planar else ()
         b = self.field(
@@ -234,7 +240,7 @@ class _Builder:
             "base point, base frame",
             "base_point",
             lambda leg: leg.base_point,
-            flat,
+            zeros=flat,
         )
         frame = self.field(
             "base_frame",
@@ -243,6 +249,7 @@ class _Builder:
             "rotation from leg axes to base axes",
             "base_frame",
             lambda leg: leg.base_frame,
+            rule=self._turned(),
         )
         p = self.field(
             "platform_point",
@@ -251,7 +258,7 @@ class _Builder:
             "platform joint, platform frame",
             "platform_point",
             lambda leg: leg.platform_point,
-            flat,
+            zeros=flat,
         )
         if self.planar:  # legs of the plane keep z along the plane's normal
             frame = (*frame[:2], 0, *frame[3:5], 0, 0, 0, 1)
@@ -279,7 +286,8 @@ class _Builder:
                     f"axis of joint {j}, preceding link's frame",
                     f"joints[{j - 1}].axis",
                     lambda leg, j=j: leg.joints[j - 1].axis,
-                    (2,) if self.planar else (),
+                    zeros=(2,) if self.planar else (),
+                    rule=Rule.UNIT,
                 )
             if joint.kind is JointKind.HELICAL:
                 (g.pitch[j],) = self.field(
@@ -293,6 +301,7 @@ class _Builder:
             group = j if g.turns(j) else group
             g.group[j] = group
         g.axes_at = [self._axes_with(extra) for extra in self._extra_draws()]
+        self.book.parameters.relations.extend(axis_relations(self.type))
 
     def _extra_draws(self) -> list[dict[int, float]]:
         extras = [j for j in range(1, self.g.count + 1) if self.g.is_extra(j) and self.g.turns(j)]
@@ -333,7 +342,7 @@ class _Builder:
                 lambda leg, j=j: (*(x.offset for x in leg.joints), leg.platform_joint.offset)[
                     j - 1
                 ],
-                zeros,
+                zeros=zeros,
             )
             self.g.offset[j] = self.give(
                 f"d_{j}",
@@ -628,6 +637,7 @@ class _Builder:
                 "platform axes in the last link's frame",
                 "platform_joint.rotation",
                 lambda leg: leg.platform_joint.rotation,
+                rule=self._turned(),
             )
             for k in range(3):
                 i = (k + 1) % 3
@@ -690,6 +700,7 @@ class _Builder:
             f"{name} of the platform joint",
             f"platform_joint.{name}",
             lambda leg: getattr(leg.platform_joint, name),
+            rule=Rule.UNIT,
         )
 
     def _pair(self, k: int, link: Any, platform: Any) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import sympy as sp
 
-from pne_sym.derivation import PLATFORM, Book, Frame, Law, ParameterField, Quantity, Role
+from pne_sym.derivation import PLATFORM, Book, Frame, Law, ParameterField, Quantity, Role, Rule
 from pne_sym.model.kinematics import TaskSpace
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import (
@@ -205,6 +205,7 @@ def _inertia(book: Book, manipulator: Manipulator, space: TaskSpace) -> tuple[An
             "mass of the platform",
             ("platform.mass",),
             np.array(platform.mass),
+            rule=Rule.MASS,
         )
     )
     centre = table.add(
@@ -239,6 +240,7 @@ def _inertia(book: Book, manipulator: Manipulator, space: TaskSpace) -> tuple[An
             "inertia tensor about the centre of mass, platform axes",
             ("platform.inertia",),
             np.array(platform.inertia, dtype=float),
+            rule=Rule.PLANAR_INERTIA if space.planar else Rule.INERTIA,
         )
     )
     inertia = book.give(

@@ -18,7 +18,7 @@ _FORMS = (
     "a 3x3 tensor, three principal values [ixx, iyy, izz], "
     "or a table of ixx, iyy, izz, ixy, ixz, iyz (kg m^2)"
 )
-_RELATIVE = 1e-9
+RELATIVE = 1e-9
 """Rounding allowed in symmetry, sign and triangle inequality, of the largest entry."""
 
 
@@ -82,7 +82,7 @@ def _check_planar(entry: Entry, tensor: Matrix3) -> None:
 def _checked_spatial(entry: Entry, tensor: Matrix3) -> Matrix3:
     """The tensor, made exactly symmetric where it is so up to rounding."""
     array = np.array(tensor)
-    rounding = _RELATIVE * float(np.abs(array).max())
+    rounding = RELATIVE * float(np.abs(array).max())
     if np.abs(array - array.T).max() > rounding:
         raise entry.fault("a symmetric tensor")
     smallest, middle, largest = np.linalg.eigvalsh(array)

@@ -171,8 +171,10 @@ class _Run:
             if check.trouble == "singular":
                 bound = TOLERANCE**check.power * value_of(check.scale, self.values)
                 good = np.abs(value) > bound
+            elif check.trouble == "invalid":
+                good = (value > 0.0) & np.isfinite(value)
             else:
-                good = value > 0.0 if check.trouble == "invalid" else value >= 0.0
+                good = value >= 0.0
             failed = ~np.broadcast_to(good, shape)
             if failed.any():
                 self.failures.append(Failure(check, leg_type, failed))

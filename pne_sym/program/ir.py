@@ -82,7 +82,8 @@ class Assignment:
 class Check:
     """A guard: failing means the state is impossible.
 
-    UNREACHABLE: value >= 0.  SINGULAR: |value| > tolerance^power * scale.
+    INVALID: value > 0 and finite.  UNREACHABLE: value >= 0.
+    SINGULAR: |value| > tolerance^power * scale.
     """
 
     trouble: str

@@ -91,6 +91,94 @@ def test_input_that_is_not_finite(stewart: Case, function: str) -> None:
         np.testing.assert_allclose(array[14], whole[14], rtol=1e-9, atol=1e-9 * np.abs(whole).max())
 
 
+LENGTHS = (1e-324, 1e-161, 1e-155, 9e-155, 1.2e-154, 1e-100, 1e-30, 1e30, 1.2e154, 1.5e154, 1e200)
+"""Of quaternions; their squares are numbers with all digits from 1.1e-154 to 1.3e154."""
+
+
+def test_length_of_quaternions(stewart: Case) -> None:
+    """The same lengths are INVALID in both codes, in all functions of the model."""
+    direction = np.array([0.1, 0.05, -0.08, 0.99])
+    direction /= np.linalg.norm(direction)
+    X = np.resize(stewart.given["X"], (len(LENGTHS), 7))
+    X[:, 3:] = np.array(LENGTHS)[:, None] * direction
+    fine = (np.array(LENGTHS) > 1.1e-154) & (np.array(LENGTHS) < 1.34e154)
+    for function in ("M", "H", "inverse_kinematics", "dynamics", "forward_dynamics"):
+        arguments = [i.name for i in stewart.library.api[function].inputs]
+        some = {**{n: np.resize(stewart.given[n], (len(LENGTHS), 6)) for n in arguments}, "X": X}
+        found, status = stewart.library.batch(function, *(some[n] for n in arguments))
+        assert status.tolist() == np.where(fine, OK, INVALID).tolist()
+        unit = {**some, "X": np.where(np.arange(7) < 3, X, [0.0, 0.0, 0.0, *direction])}
+        made = getattr(stewart.module, function)(**unit)
+        own = getattr(stewart.module, function)(**some)
+        single = [
+            getattr(stewart.module, function)(**{n: some[n][k] for n in arguments})
+            for k in range(len(LENGTHS))
+        ]
+        for n, array in enumerate(found):
+            want = (made if isinstance(made, tuple) else (made,))[n].reshape(len(LENGTHS), -1)
+            mine = (own if isinstance(own, tuple) else (own,))[n].reshape(len(LENGTHS), -1)
+            one = np.array([np.ravel((s if isinstance(s, tuple) else (s,))[n]) for s in single])
+            for got in (array, mine, one):
+                np.testing.assert_array_equal(np.isnan(got).all(axis=1), ~fine)
+                assert np.abs(got - want)[fine].max() < 1e-12 * np.abs(want).max()
+
+
+@pytest.mark.parametrize("real", ["double", "float", "long double"])
+def test_rotation_is_orthogonal(real: str, tmp_path: Path) -> None:
+    """Quaternions are scaled before they are squared: in C as in NumPy, whatever the length."""
+    manipulator = models.catalogue("spherical_3ups")
+    library = CLibrary(models.bundle(manipulator), tmp_path, real, flags=QUICK)
+    about = np.finfo(library.real)
+    rng, most = np.random.default_rng(4), 0.49 * int(np.log10(about.max))
+    q = rng.normal(size=(2000, 4)).astype(library.real)
+    lengths = rng.uniform(float(np.log10(about.tiny)), most, (len(q), 1))
+    q *= library.real.type(10.0) ** lengths.astype(library.real)
+    R = library.batch("rotation", q)[0][0].reshape(-1, 3, 3)
+    error = np.abs(R @ np.swapaxes(R, 1, 2) - np.eye(3)).max()
+    assert error < 5 * about.eps
+    tiny = np.zeros((2, 4), library.real)
+    tiny[0, 1] = about.smallest_subnormal
+    found, status = library.batch("rotation", tiny)
+    assert status.tolist() == [OK, INVALID]
+    np.testing.assert_array_equal(found[0][0], np.diag([-1.0, 1.0, -1.0]).reshape(-1))
+
+
+@pytest.mark.parametrize("name", ["stewart", "planar_3rrr", "spherical_3ups"])
+def test_poses_of_what_is_no_rotation(name: str, tmp_path: Path) -> None:
+    """INVALID in C where the NumPy module raises ValueError: to 1e-6."""
+    manipulator = models.catalogue(name)
+    module = models.module(manipulator)
+    library = CLibrary(models.bundle(manipulator), tmp_path, flags=QUICK)
+    good = np.asarray(module.rotation(module.HOME_X))
+    n, rng = len(good), np.random.default_rng(6)
+    t = np.zeros(library.api["pose"].inputs[0].size)
+    skewed = np.eye(n)
+    skewed[1, 0] = 1.0
+    flipped = np.diag([*[1.0] * (n - 1), -1.0])
+    for off, fine in ((0.0, True), (0.999e-6, True), (1.001e-6, False)):
+        for R in (good * np.sqrt(1.0 + off), (np.eye(n) + off * (skewed - np.eye(n))) @ good):
+            assert refused(module, library, t, R) == (not fine, OK if fine else INVALID)
+    swapped = good[[1, 0, *range(2, n)]]
+    for R in (0.0 * good, swapped, flipped, 2.0 * good, skewed, rng.normal(size=(n, n))):
+        assert refused(module, library, t, R) == (True, INVALID)
+    R = good.copy()
+    R[0, 1] = np.nan
+    assert refused(module, library, t, R) == (False, INVALID)
+    assert np.isnan(module.pose(t, R)).all()
+
+
+def refused(module: Any, library: CLibrary, t: Array, R: Array) -> tuple[bool, int]:
+    """Whether NumPy raises an error, and the status in C."""
+    outputs, status = library.single("pose", t, R)
+    assert np.isnan(outputs[0]).all() == np.isnan(outputs[0]).any() == (status != OK)
+    try:
+        module.pose(t, R)
+    except ValueError as error:
+        assert "pose: R is no rotation matrix" in str(error)  # noqa: PT017
+        return True, status
+    return False, status
+
+
 @pytest.mark.parametrize("name", ["V", "A", "wrench"])
 def test_other_input_that_is_not_finite(stewart: Case, name: str) -> None:
     value = stewart.given[name].copy()

@@ -12,6 +12,7 @@ from tests.whole.cases import Array, Case, guess_of
 
 Vectors = dict[str, Array]
 Outputs = tuple[Array, ...]
+NOT_VECTORS = ("p", "weights", "nearest")
 
 
 def functions(model: Any) -> dict[str, tuple[str, ...]]:
@@ -21,7 +22,7 @@ def functions(model: Any) -> dict[str, tuple[str, ...]]:
         member = getattr(model, name)
         if inspect.isfunction(member):
             parameters = inspect.signature(member).parameters
-            found[name] = tuple(n for n in parameters if n not in ("p", "weights"))
+            found[name] = tuple(n for n in parameters if n not in NOT_VECTORS)
     return found
 
 

@@ -78,7 +78,7 @@ def answers(c: Case) -> dict[str, Any]:
     """Everything that has an independent value, as the model gives it."""
     m, p, s, guess = c.model, c.p, c.state, c.guess
     M, Z, H = m.dynamics(s.X, s.V, p, **guess)
-    tau, lam = _split(m.inverse_dynamics(s.X, s.V, s.A, p, s.wrench, **guess), m)
+    tau, lam = _split(m.inverse_dynamics(s.X, s.V, s.A, p, wrench=s.wrench, **guess), m)
     kinetic, potential = m.energy(s.X, s.V, p, **guess)
     found = {
         "M": M,
@@ -90,8 +90,8 @@ def answers(c: Case) -> dict[str, Any]:
         "tau": tau,
         "kinetic": kinetic,
         "potential": potential,
-        "reactions": m.leg_reactions(s.X, s.V, s.A, p, s.wrench, **guess),
-        "A": _split(m.forward_dynamics(s.X, s.V, c.oracle.tau, p, s.wrench, **guess), m)[0],
+        "reactions": m.leg_reactions(s.X, s.V, s.A, p, wrench=s.wrench, **guess),
+        "A": _split(m.forward_dynamics(s.X, s.V, c.oracle.tau, p, wrench=s.wrench, **guess), m)[0],
     }
     if m.NC:
         Hk = m.Hk(s.X, p, **guess)

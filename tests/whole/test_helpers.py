@@ -116,3 +116,77 @@ def test_without_a_position() -> None:
     X = model.pose(None, about(0, 0.3))
     assert np.abs(X - [np.sin(0.15), 0.0, 0.0, np.cos(0.15)]).max() < 1e-15
     assert np.abs(model.pose_from_rpy(None, [0.3, 0.0, 0.0]) - X).max() < 1e-15
+
+
+@pytest.mark.parametrize("name", QUATERNION)
+def test_rotation_is_orthogonal_for_all_lengths(name: str) -> None:
+    model, rng, first = module(catalogue(name)), np.random.default_rng(3), 0
+    first = place(model).size
+    X = np.tile(np.array(model.HOME_X), (3000, 1))
+    X[:, first : first + 4] = rng.normal(size=(3000, 4)) * 10.0 ** rng.uniform(-307, 153, (3000, 1))
+    R = model.rotation(X)
+    assert np.abs(R @ np.swapaxes(R, 1, 2) - np.eye(3)).max() < 1e-15
+    assert np.abs(np.linalg.det(R) - 1.0).max() < 1e-14
+    q = X[:, first : first + 4] / np.abs(X[:, first : first + 4]).max(axis=1, keepdims=True)
+    X[:, first : first + 4] = q
+    assert np.abs(model.rotation(X) - R).max() < 1e-14
+    for length, good in ((1e-161, True), (5e-324, True), (0.0, False), (1.4e154, False)):
+        X[0, first : first + 4] = [0.0, length, 0.0, 0.0]
+        assert np.array_equal(model.rotation(X[0]), np.diag([-1.0, 1.0, -1.0])) == good
+        assert np.isnan(model.rotation(X[0])).all() != good
+
+
+@pytest.mark.parametrize("name", [*QUATERNION, "planar_3rpr"])
+def test_the_nearest_rotation(name: str) -> None:
+    """That of least sum of squares: no small turn of it is nearer; on request alone."""
+    model, rng = module(catalogue(name)), np.random.default_rng(8)
+    n = model.rotation(model.HOME_X).shape[0]
+    t = place(model) if n == 3 else np.zeros(2)
+    turns = [about(k, s * 1e-4)[:n, :n] for k in ((0, 1, 2) if n == 3 else (2,)) for s in (-1, 1)]
+    noise = rng.normal(size=(50, n, n))
+    noise[:20] = np.eye(n) + 0.1 * noise[:20]
+    with pytest.raises(ValueError, match="pose: R is no rotation matrix, with orthonormal rows to"):
+        model.pose(t, noise)
+    with pytest.raises(TypeError):
+        model.pose(t, noise, True)
+    for R in noise:
+        found = model.rotation(model.pose(t, R, nearest=True))
+        assert np.abs(found @ found.T - np.eye(n)).max() < 1e-14
+        assert np.linalg.det(found) > 0.0
+        distance = np.linalg.norm(found - R)
+        assert all(np.linalg.norm(turn @ found - R) > distance for turn in turns)
+    again = model.rotation(model.pose(t, noise, nearest=True))
+    assert (
+        np.abs(again - [model.rotation(model.pose(t, R, nearest=True)) for R in noise]).max()
+        < 1e-14
+    )
+    assert (
+        np.abs(model.pose(t, 2.0 * np.eye(n), nearest=True) - model.pose(t, np.eye(n))).max()
+        < 1e-15
+    )
+    several = [np.zeros((n, n)), np.diag([1.0] * (n - 1) + [-1.0])]
+    several += [-np.eye(3)] if n == 3 else []
+    for R in several:
+        with pytest.raises(ValueError, match="pose: R has no single nearest rotation"):
+            model.pose(t, R, nearest=True)
+
+
+@pytest.mark.parametrize("name", ["stewart", "planar_3rpr"])
+def test_poses_in_batches(name: str) -> None:
+    """NaN in the rows of what is not finite; an error where a rotation is none."""
+    model = module(catalogue(name))
+    good = model.rotation(model.HOME_X)
+    R = np.tile(good, (4, 1, 1))
+    R[1, 0, 0] = np.nan
+    t = np.zeros(3 if len(good) == 3 else 2)
+    for nearest in (False, True):
+        np.testing.assert_array_equal(
+            np.isnan(model.pose(t, R, nearest=nearest)).any(axis=1), [False, True, False, False]
+        )
+    R[2] *= 1.01
+    with pytest.raises(ValueError, match="pose: R is no rotation matrix"):
+        model.pose(t, R)
+    for wrong in (np.eye(4), np.ones(3), np.float64(2.0)):
+        with pytest.raises(ValueError, match=r"pose: R has shape .*, expected \(\.\.\., "):
+            model.pose(t, wrong)
+    assert model.pose(t, np.empty((0, *good.shape))).shape == (0, model.NQ)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import pickle
 import re
-from copy import deepcopy
+import sys
+from copy import copy, deepcopy
 from dataclasses import replace
 from typing import Any
 
@@ -58,7 +60,8 @@ def _nearby(value: Any, parameter: str, space: str, rng: np.random.Generator) ->
         return old @ np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
     if parameter.endswith("inertia"):
         root = rng.uniform(-0.1, 0.1, (3, 3))
-        return old + 0.1 * root @ root.T
+        second = 0.1 * root @ root.T  # second moments of a mass, so that a body has the sum
+        return old + np.trace(second) * np.eye(3) - second
     if parameter.endswith(("gravity", "centre", "point", "centre_of_mass")):
         shift = rng.uniform(-0.02, 0.02, 3)
         return old + (shift * (1.0, 1.0, 0.0) if planar else shift)
@@ -120,29 +123,56 @@ def test_shapes(name: str) -> None:
                 model.Parameters(**{parameter: np.ones(wrong)})
         with pytest.raises(ValueError, match=f"{parameter} has entries that are not finite"):
             model.Parameters(**{parameter: np.full(shape, np.nan)})
+        with pytest.raises(ValueError, match=rf"{parameter} has entries beyond 1e\+12 in size"):
+            model.Parameters(**{parameter: np.full(shape, -1.001e12)})
 
 
-IMPOSSIBLE: dict[str, tuple[str, Any, str]] = {
-    "platform_mass": ("stewart", -1.0, "must not be negative"),
-    "platform_inertia": ("stewart", [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]], "must be symmetric"),
-    "ups_base_frame": ("stewart", np.tile(np.diag([1, 1, -1]), (6, 1, 1)), "must be rotation"),
-    "rrr_base_frame": (
+SKEWED = [[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]
+IMPOSSIBLE: tuple[tuple[str, str, Any, str], ...] = (
+    ("stewart", "platform_mass", -1.0, "must not be negative"),
+    ("stewart", "platform_inertia", SKEWED, "must be symmetric"),
+    ("stewart", "platform_inertia", -5.0 * np.eye(3), "must have no negative principal"),
+    ("stewart", "platform_inertia", np.ones((3, 3)) - np.eye(3), "must have no negative principal"),
+    ("stewart", "ups_base_frame", np.tile(np.diag([1, 1, -1]), (6, 1, 1)), "must be rotation"),
+    (
         "planar_3rrr",
+        "rrr_base_frame",
         np.tile(np.diag([1, -1, -1]), (3, 1, 1)),
         "must turn about the normal",
     ),
-    "rrr_joint2_offset": ("planar_3rrr", np.full((3, 3), 0.4), "must be zero in entries"),
-    "upu_platform_joint_axis_platform": ("tripod_3upu", np.ones((3, 3)), "must be of length 1"),
-}
+    ("planar_3rrr", "rrr_joint2_offset", np.full((3, 3), 0.4), "must be zero in entries"),
+    ("planar_3rrr", "platform_inertia", -np.eye(3), "must have an izz that is not negative"),
+    ("tripod_3upu", "upu_platform_joint_axis_platform", np.ones((3, 3)), "must be of length 1"),
+)
 
 
-@pytest.mark.parametrize("parameter", IMPOSSIBLE)
-def test_impossible_values(parameter: str) -> None:
-    name, value, message = IMPOSSIBLE[parameter]
+@pytest.mark.parametrize(("name", "parameter", "value", "message"), IMPOSSIBLE)
+def test_impossible_values(name: str, parameter: str, value: Any, message: str) -> None:
     model = module(catalogue(name))
     for make in (model.Parameters, model.Parameters().replace):
         with pytest.raises(ValueError, match=rf"Parameters: {parameter} {message}"):
             make(**{parameter: value})
+
+
+def test_tensors_are_judged_by_themselves() -> None:
+    """A large inertia of one leg excuses no other."""
+    model = module(catalogue("stewart"))
+    name = next(n for n in vars(model.Parameters()) if n.endswith("link2_inertia"))
+    good = np.array(getattr(model.Parameters(), name))
+    good[0] = 1e10 * np.eye(3)
+    model.Parameters(**{name: good})
+    for wrong in ((0, 1), (2, 2)):
+        bad = good.copy()
+        bad[(3, *wrong)] = -1.0
+        with pytest.raises(ValueError, match=f"{name} must"):
+            model.Parameters(**{name: bad})
+
+
+def test_zero_inertia_and_in_the_plane_izz_alone() -> None:
+    module(catalogue("stewart")).Parameters(platform_inertia=np.zeros((3, 3)))
+    module(catalogue("planar_3rrr")).Parameters(
+        platform_inertia=[[-3, 2, 1], [0, -1, 5], [7, 0, 0]]
+    )
 
 
 def test_the_rotation_of_a_rigid_platform_joint_is_one() -> None:
@@ -176,6 +206,68 @@ def test_frozen_copies() -> None:
         p.gravity = given
     with pytest.raises(AttributeError, match="frozen"):
         del p.gravity
+    for array in (p.gravity, p.ups_base_frame, model.HOME_X, model.HOME_Q):
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.setflags(write=True)
     other = p.replace(platform_mass=3.0)
     assert (other.platform_mass, other.gravity[2]) == (3.0, -1.6)
     assert p.platform_mass == model.Parameters().platform_mass
+
+
+COPIES = {
+    "copy": copy,
+    "deepcopy": deepcopy,
+    "pickle": lambda p: pickle.loads(pickle.dumps(p)),
+    "replace": lambda p: p.replace(),
+}
+
+
+@pytest.mark.parametrize("made", COPIES)
+def test_copies_are_made_anew(made: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Read-only as the first, equal to it, and without what was computed from its values."""
+    model = module(catalogue("stewart"))
+    monkeypatch.setitem(sys.modules, model.__name__, model)  # where pickle looks for the class
+    p = model.Parameters(platform_mass=7.5, gravity=[0.0, -0.0, -1.6])
+    X = np.array(model.HOME_X)
+    expected = model.inverse_dynamics(X, np.zeros(6), np.zeros(6), p)
+    assert p._cache
+    other = COPIES[made](p)
+    assert other == p
+    assert other is not p
+    assert hash(other) == hash(p)
+    assert not other._cache
+    assert np.array_equal(model.inverse_dynamics(X, np.zeros(6), np.zeros(6), other), expected)
+    with pytest.raises(ValueError, match="read-only"):
+        other.platform_centre_of_mass[0] = 0.2
+    with pytest.raises(ValueError, match="WRITEABLE"):
+        other.platform_centre_of_mass.setflags(write=True)
+
+
+def test_what_is_unpickled_is_checked(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = module(catalogue("stewart"))
+    monkeypatch.setitem(sys.modules, model.__name__, model)
+    text = pickle.dumps(model.Parameters(platform_mass=7.5), protocol=0)
+    with pytest.raises(ValueError, match="platform_mass must not be negative"):
+        pickle.loads(text.replace(b"F7.5", b"F-7.5"))
+
+
+def test_equal_parameters_have_equal_hashes() -> None:
+    model = module(catalogue("stewart"))
+    p, q = (model.Parameters(gravity=[zero, 0.0, -1.6]) for zero in (0.0, -0.0))
+    assert p == q
+    assert hash(p) == hash(q)
+
+
+NO_BODY = np.diag([1.0, 1.0, 5.0])
+
+
+def test_principal_moments_of_no_body() -> None:
+    """A warning, as in the reader; once, where such an inertia is given."""
+    model = module(catalogue("stewart"))
+    for make in (model.Parameters, model.Parameters().replace):
+        with pytest.warns(UserWarning, match="platform_inertia: principal moments 1, 1, 5") as told:
+            p = make(platform_inertia=NO_BODY)
+        assert told[0].filename == __file__
+    deepcopy(p).replace(platform_mass=3.0)
+    flat = module(catalogue("planar_3rrr"))
+    flat.Parameters(platform_inertia=NO_BODY)

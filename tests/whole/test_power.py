@@ -26,7 +26,7 @@ def test_power_balance(name: str) -> None:
         X = displaced(c.spec, s.X, h * s.V + h**2 / 2 * s.A)
         return np.array(m.energy(X, s.V + h * s.A, p, **c.guess))
 
-    tau = m.inverse_dynamics(s.X, s.V, s.A, p, s.wrench, **c.guess)
+    tau = m.inverse_dynamics(s.X, s.V, s.A, p, wrench=s.wrench, **c.guess)
     tau = tau[0] if m.NC else tau
     driven = m.joint_rates(s.X, s.V, p, **c.guess)[actuated_indices(c.spec)]
     power = np.array([tau @ driven, s.wrench @ s.V[: m.NW]])
@@ -40,9 +40,9 @@ def test_inverse_dynamics_undoes_forward_dynamics(name: str) -> None:
     c = case(name, 2)
     m, p, s = c.model, c.p, c.state
     tau = np.random.default_rng(2).uniform(-30.0, 30.0, m.NU)
-    A = m.forward_dynamics(s.X, s.V, tau, p, s.wrench, **c.guess)
+    A = m.forward_dynamics(s.X, s.V, tau, p, wrench=s.wrench, **c.guess)
     A, lam = A if m.NC else (A, np.zeros(0))
-    again = m.inverse_dynamics(s.X, s.V, A, p, s.wrench, **c.guess)
+    again = m.inverse_dynamics(s.X, s.V, A, p, wrench=s.wrench, **c.guess)
     again, lam_again = again if m.NC else (again, np.zeros(0))
     H = m.H(s.X, p, **c.guess)
     Hk = m.Hk(s.X, p, **c.guess) if m.NC else np.zeros((m.NV, 0))
