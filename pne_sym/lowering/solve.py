@@ -105,8 +105,10 @@ class _System:
         return self.screws.rows[j][i] if self.across else self.screws.rows[i][j]
 
     def size(self, i: int, j: int) -> Atom:
-        """What the entry is measured by."""
-        return self.screws.sizes[i if self.across else j]
+        """What the entry is measured by: of its unit, which its row decides too."""
+        row, column = (j, i) if self.across else (i, j)
+        weight = self.b.inverse(self.screws.weights[row])
+        return self.b.mul(self.screws.sizes[column], weight)
 
     def hint(self, j: int) -> str:
         """Name for an unknown."""

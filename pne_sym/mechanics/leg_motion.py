@@ -264,7 +264,7 @@ class MotionWriter:
         motion.left_out = [wrench for wrench in wrenches if wrench.acts]
         for wrench in wrenches:
             vectors.append(wrench.force)
-            scales.append(sp.S.One)
+            scales.append(g.size if wrench.of_moment else sp.S.One)
             for row, amount in zip(rows, wrench.amounts, strict=True):
                 row.append(amount)
         screws = [
