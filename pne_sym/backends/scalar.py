@@ -23,7 +23,10 @@ class Dialect:
     number: str
 
 
-PYTHON = Dialect({"sqrt": "sqrt", "sin": "sin", "cos": "cos", "atan2": "atan2"}, "{}")
+PYTHON = Dialect(
+    {"sqrt": "sqrt", "sin": "sin", "cos": "cos", "atan2": "atan2", "Abs": "abs", "Min": "least"},
+    "{}",
+)
 
 
 class ScalarPrinter(StrPrinter):
@@ -124,7 +127,16 @@ class ScalarPrinter(StrPrinter):
             raise TypeError(f"no function {type(expr).__name__} in generated code")
         return f"{name}({', '.join(self._print(arg) for arg in expr.args)})"
 
-    _print_sin = _print_cos = _print_atan2 = _print_Function
+    _print_sin = _print_cos = _print_atan2 = _print_Abs = _print_Function
+
+    def _print_Min(self, expr: Any) -> str:
+        """The least of several, two at a time."""
+        name = self.dialect.functions["Min"]
+        first, *others = sorted(expr.args, key=sp.default_sort_key)
+        text = str(self._print(first))
+        for other in others:
+            text = f"{name}({text}, {self._print(other)})"
+        return text
 
     def emptyPrinter(self, expr: Any) -> str:
         """Refuse what is not in the closed set."""
