@@ -30,6 +30,8 @@ CALLS = {
     "forward_dynamics": ("X", "V", "tau"),
     "leg_reactions": ("X", "V", "A"),
     "energy": ("X", "V"),
+    "condition": ("X",),
+    "condition_constrained": ("X",),
 }
 
 

@@ -21,7 +21,7 @@ def functions(model: Any) -> dict[str, tuple[str, ...]]:
         member = getattr(model, name)
         if inspect.isfunction(member):
             parameters = inspect.signature(member).parameters
-            found[name] = tuple(n for n in parameters if n not in ("p", "weights"))
+            found[name] = tuple(n for n in parameters if n not in ("p", "weights", "length"))
     return found
 
 
@@ -49,10 +49,14 @@ def states(c: Case, lead: tuple[int, ...], seed: int = 0) -> Vectors:
 
 
 def call(c: Case, name: str, vectors: Vectors) -> Outputs:
-    """The outputs of a function with those of the given vectors that it takes."""
+    """The outputs of a function with those of the given vectors that it takes.
+
+    Status codes are left out: they are no numbers that could be NaN.
+    """
     function = getattr(c.model, name)
     arguments: dict[str, Any] = {n: vectors[n] for n in functions(c.model)[name] if n in vectors}
     if "p" in inspect.signature(function).parameters:
         arguments["p"] = c.p
     result = function(**arguments)
-    return result if isinstance(result, tuple) else (result,)
+    outputs = result if isinstance(result, tuple) else (result,)
+    return outputs[:2] if name.startswith("condition") else outputs
