@@ -28,7 +28,7 @@ class Tested(NamedTuple):
     scale: Array
 
 
-def tested(
+def checks_at(
     bundle: Bundle, parameters: Mapping[str, Any], vectors: Mapping[str, Array]
 ) -> Iterator[Tested]:
     """Every check of every function at the states X, V, A, q (states, ...)."""
