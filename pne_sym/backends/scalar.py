@@ -127,7 +127,10 @@ class ScalarPrinter(StrPrinter):
             raise TypeError(f"no function {type(expr).__name__} in generated code")
         return f"{name}({', '.join(self._print(arg) for arg in expr.args)})"
 
-    _print_sin = _print_cos = _print_atan2 = _print_Abs = _print_Function
+    _print_sin = _print_cos = _print_atan2 = _print_Function
+
+    def _print_Abs(self, expr: Any) -> str:
+        return self._print_Function(expr)
 
     def _print_Min(self, expr: Any) -> str:
         """The least of several, two at a time."""

@@ -110,7 +110,7 @@ def bounds(name: str, given: dict[str, Array]) -> tuple[Array, Array]:
     guess = {"q0": given["q0"]} if "q0" in model.M.__code__.co_varnames else {}
     with np.errstate(all="ignore"):
         sigma, legs, _ = function(given["X"], **guess)
-        of_legs = 1e-12 / np.minimum(legs.min(axis=1), 1.0) ** 2
+        of_legs = 1e-12 / np.minimum(legs.min(axis=1), 1.0)
         return of_legs, of_legs * sigma[:, 0] / sigma[:, -1]
 
 

@@ -56,7 +56,8 @@ def test_singular_values_and_codes(name: str, tmp_path: Path) -> None:
     library = CLibrary(bundle(spec), tmp_path, flags=("-O0",))
     for function in ("condition", "condition_constrained")[: 1 + bool(model.NC)]:
         sigma, legs, status = getattr(model, function)(X, **guess)
-        assert status[1] == status[2] == INVALID
+        assert status[1] == INVALID
+        assert status[2] != OK
         good = status == OK
         assert good.sum() >= STATES - 4
         assert np.isnan(sigma[~good]).all()
@@ -96,9 +97,8 @@ def test_the_length_follows_the_parameters() -> None:
 
 def test_points_that_coincide() -> None:
     """The size of the legs stands in: never a division by zero."""
-    model = module(catalogue("planar_3rrr"))
-    name = next(n for n in vars(model.Parameters()) if n.endswith("platform_point"))
-    p = model.Parameters(**{name: np.tile(getattr(model.Parameters(), name)[0], (3, 1))})
+    model = module(catalogue("stewart"))
+    p = model.Parameters(ups_platform_point=np.tile([0.1, 0.0, 0.2], (6, 1)))
     sigma, legs, status = model.condition(model.HOME_X, p)
     assert status == OK
     assert np.isfinite(sigma).all()
@@ -108,7 +108,7 @@ def test_points_that_coincide() -> None:
 @pytest.mark.parametrize("length", [0.0, -1.0, np.nan, np.inf, [1.0, 2.0]])
 def test_wrong_lengths(length: Any) -> None:
     model = module(catalogue("stewart"))
-    with pytest.raises(ValueError, match="condition: length is .*, expected a positive number"):
+    with pytest.raises(ValueError, match=r"condition: length is .*, expected a positive number"):
         model.condition(model.HOME_X, length=length)
 
 
