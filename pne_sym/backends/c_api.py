@@ -211,6 +211,7 @@ def _derived(d: Described) -> list[Api]:
             (X,),
         ),
     ]
+    found += _conditioning(d)
     if d.is_constrained:
         found.append(
             Api(
@@ -218,6 +219,36 @@ def _derived(d: Described) -> list[Api]:
                 "The nearest pose on which the constraints hold.",
                 (X,),
                 (Argument("projected", n["NQ"], "NQ"),),
+            )
+        )
+    return found
+
+
+def _conditioning(d: Described) -> list[Api]:
+    """How far a pose is from singularities."""
+    n, X = d.sizes, _vectors(d)["X"]
+    legs = Argument("legs", d.legs)
+
+    def sigma(columns: int) -> Argument:
+        return Argument("sigma", min(n["NV"], columns))
+
+    found = [
+        Api(
+            "condition",
+            "Singular values of H in descending order, moment rows divided by the rms distance of "
+            "the platform points from their centroid; for every leg the least tested pivot as a "
+            "fraction of its scale.",
+            (X,),
+            (sigma(n["NU"]), legs),
+        )
+    ]
+    if d.is_constrained:
+        found.append(
+            Api(
+                "condition_constrained",
+                "The same of [H Hk], which inverse dynamics solves.",
+                (X,),
+                (sigma(n["NU"] + n["NC"]), legs),
             )
         )
     return found
@@ -267,6 +298,7 @@ _WORK = {
     "inverse_dynamics_weighted": "required",
     "forward_dynamics": "dynamics",
     "leg_reactions": "legs",
+    "condition_constrained": "condition",
 }
 
 
@@ -283,6 +315,7 @@ def _counted(bundle: Bundle, api: Api) -> Api:
         if api.name == "dynamics"
         else "; the solution of the linear equations apart",
         "legs": "; inverse dynamics apart",
+        "condition": "; the singular values apart",
     }.get(name, "")
     return replace(
         api,

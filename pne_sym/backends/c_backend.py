@@ -16,7 +16,7 @@ from pne_sym.backends.c_model import (
     prepare_body,
 )
 from pne_sym.backends.c_text import Routine, wrapped
-from pne_sym.backends.describe import Described, describe
+from pne_sym.backends.describe import Described, describe, moment_rows
 from pne_sym.backends.templating import render
 from pne_sym.program.ir import Closure
 
@@ -53,6 +53,7 @@ class CView:
         closure_functions: texts of the functions that these need.
         functions: texts of the other functions of the program.
         calls: calls of such functions in templates, by purpose.
+        moment_rows: rows of H and Hk that are moments.
         driven: number of equations from which the forces are found.
         completion: number of equations for the accelerations of passive extra coordinates.
         gathers: whether rows on which nothing acts are found by rank.
@@ -80,6 +81,7 @@ class CView:
     closure_functions: tuple[str, ...]
     functions: tuple[str, ...]
     calls: dict[str, str]
+    moment_rows: tuple[int, ...]
     driven: int
     completion: int
     gathers: bool
@@ -133,6 +135,7 @@ class CBackend:
             closure_functions=tuple(t for n, t in functions.items() if _is_closure(n)),
             functions=tuple(t for n, t in functions.items() if not _is_closure(n)),
             calls=_calls(runs),
+            moment_rows=moment_rows(bundle),
             driven=len(d.actuation.solved) - d.actuation.surplus,
             completion=completion,
             gathers=d.resolves or n["NU"] > d.actuation.force_rank != len(d.actuation.others),
@@ -207,6 +210,7 @@ def _calls(runs: dict[str, Routine]) -> dict[str, str]:
         "dynamics_one": runs["dynamics"].call(**one),
         "M_one": runs["M"].call(**one),
         "Z_one": runs["Z"].call(**one),
+        "condition_one": runs["condition"].call(**one),
         "legs_one": runs["legs"].call(**one),
         "potential_one": runs["potential"].call(potential="energies + 1", **one),
     }

@@ -79,10 +79,18 @@ class ApiWriter:
         ]
         if a.lanes:
             lanes = self._call(f"{a.name}_any", [*model, "LANES", *self._arguments("i"), "codes"])
+            again = self._call(
+                f"codes[k] = {self.prefix}_{a.name}", [*model, *self._arguments("(i + k)")]
+            )
             lines += [
                 "    for (; i + LANES <= n; i += LANES) {",
                 "        int codes[LANES];",
                 *indented(lanes, 2),
+                "        for (size_t k = 0; k < LANES; ++k) {",
+                f"            if (codes[k] != {self.prefix.upper()}_OK) {{",
+                *indented(again, 4),
+                "            }",
+                "        }",
                 "        failed += record(codes, LANES, status ? status + i : NULL);",
                 "    }",
             ]

@@ -16,7 +16,17 @@ _ENTRY = re.compile(r"[A-Z]+_\d+")
 _RESERVED = frozenset({"size_t", "ptrdiff_t", "wchar_t", "max_align_t"})
 _EXACT = 1 << 20  # whole numbers up to here are exact in every real type
 # Functions of the real type, defined in the generated file; none is a name of libm.
-_DIALECT = Dialect({"sqrt": "root", "sin": "sine", "cos": "cosine", "atan2": "angle"}, "R({})")
+_DIALECT = Dialect(
+    {
+        "sqrt": "root",
+        "sin": "sine",
+        "cos": "cosine",
+        "atan2": "angle",
+        "Abs": "magnitude",
+        "Min": "lesser",
+    },
+    "R({})",
+)
 
 
 def c_name(name: str) -> str:

@@ -164,6 +164,14 @@ def describe(bundle: Bundle) -> Described:
     )
 
 
+def moment_rows(bundle: Bundle) -> tuple[int, ...]:
+    """Rows of H and Hk that are moments: of rotations, and of extra joints that turn."""
+    c, legs = bundle.coordinates, bundle.manipulator.legs
+    turning = [k for k, component in enumerate(c.components) if component >= 3]
+    extras = enumerate(c.extras, len(c.rates))
+    return (*turning, *(k for k, (leg, joint) in extras if legs[leg].joints[joint].turns))
+
+
 def equation_titles(derivation: Derivation) -> dict[str, str]:
     """Equation id -> title."""
     return {e.id: e.title for e in derivation.equations()}

@@ -11,6 +11,7 @@ from pne_sym.backends.describe import (
     FieldView,
     describe,
     field_views,
+    moment_rows,
 )
 from pne_sym.backends.numpy_parts import Parts
 from pne_sym.backends.numpy_text import PythonText
@@ -32,6 +33,7 @@ class ModuleView:
     driven_joints: tuple[int, ...]
     turning_drives: tuple[int, ...]
     actuator_legs: tuple[int, ...]
+    moment_rows: tuple[int, ...]
     closures: tuple[Closure, ...]
     extra_joints: tuple[int, ...]
     turning_joints: tuple[bool, ...]
@@ -69,6 +71,7 @@ class NumpyBackend:
             driven,
             tuple(k for k, j in enumerate(driven) if c.turning[j]),
             tuple(leg for leg, _ in c.actuators),
+            moment_rows(bundle),
             bundle.program.closures,
             tuple(joint for joint, _ in bundle.program.given),
             c.turning,

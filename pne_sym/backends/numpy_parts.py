@@ -42,7 +42,7 @@ class Parts:
         return [f"{n} = f.{n}" for n in names if f"{n}(" in used]
 
     def _define(self, signature: str, body: list[str]) -> str:
-        math = self._header(body, ["sqrt", "sin", "cos", "atan2"])
+        math = self._header(body, ["sqrt", "sin", "cos", "atan2", "least"])
         return f"def {signature}:\n" + textwrap.indent("\n".join(math + body), "    ")
 
     def _before(self, name: str) -> str:

@@ -23,7 +23,10 @@ class Dialect:
     number: str
 
 
-PYTHON = Dialect({"sqrt": "sqrt", "sin": "sin", "cos": "cos", "atan2": "atan2"}, "{}")
+PYTHON = Dialect(
+    {"sqrt": "sqrt", "sin": "sin", "cos": "cos", "atan2": "atan2", "Abs": "abs", "Min": "least"},
+    "{}",
+)
 
 
 class ScalarPrinter(StrPrinter):
@@ -125,6 +128,18 @@ class ScalarPrinter(StrPrinter):
         return f"{name}({', '.join(self._print(arg) for arg in expr.args)})"
 
     _print_sin = _print_cos = _print_atan2 = _print_Function
+
+    def _print_Abs(self, expr: Any) -> str:
+        return self._print_Function(expr)
+
+    def _print_Min(self, expr: Any) -> str:
+        """The least of several, two at a time."""
+        name = self.dialect.functions["Min"]
+        first, *others = sorted(expr.args, key=sp.default_sort_key)
+        text = str(self._print(first))
+        for other in others:
+            text = f"{name}({text}, {self._print(other)})"
+        return text
 
     def emptyPrinter(self, expr: Any) -> str:
         """Refuse what is not in the closed set."""

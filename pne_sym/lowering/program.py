@@ -9,10 +9,11 @@ from typing import Any
 import sympy as sp
 
 from pne_sym.derivation import Derivation, Output
-from pne_sym.lowering.builder import Atom, Builder, Statement
+from pne_sym.lowering.builder import Atom, Builder, Guard, Statement
 from pne_sym.lowering.closures import closures, given_displacements
 from pne_sym.lowering.components import Lowering
 from pne_sym.lowering.inputs import leg_inputs, unpack
+from pne_sym.lowering.margins import Margins
 from pne_sym.lowering.public import public_functions
 from pne_sym.lowering.simplify import inline_single_use, numbered, renamed
 from pne_sym.program.ir import (
@@ -49,6 +50,7 @@ GROUPS: tuple[tuple[tuple[str, tuple[str, ...]], ...], ...] = (
         ("legs", ("leg_force", "drive", "constraint_direction")),
     ),
     (("potential", ("potential",)),),
+    (("condition", ("lengths",)),),
 )
 
 
@@ -77,11 +79,26 @@ def lower(derivation: Derivation) -> Program:
             present = tuple(a for a in arrays if 0 not in shapes.get(a, (0,)))
             if present:
                 slices.append(_Slice(name, present, chosen))
+    _add_margins(derivation, builder, {s.name: s for s in slices})
     program = _program(derivation, builder, slices)
     table = derivation.parameters
     outside = {name: parameter.leg_type or "" for name, (parameter, _) in table.entries.items()}
     verify(program, outside | {name: leg for name, (leg, _) in table.branches.items()})
     return replace(program, public=public_functions(derivation, program))
+
+
+def _add_margins(derivation: Derivation, builder: Builder, slices: dict[str, _Slice]) -> None:
+    """H, Hk and the margins of all guards of M, Z, H and inverse dynamics join the lengths."""
+    guards: list[Guard] = []
+    for name in ("dynamics", "required"):
+        known = {g.equation for g in guards}  # of the same values, lowered for other functions
+        guards += [g for g in slices[name].statements(builder)[1] if g.equation not in known]
+    margins = Margins(derivation, builder, guards)
+    made = slices["condition"]
+    made.arrays = ("H", *(("Hk",) if "Hk" in slices else ()), *made.arrays, "pivots", "reach")
+    matrices = [store for name in ("H", "Hk") if name in slices for store in slices[name].stores]
+    made.stores = [*matrices, *made.stores, *margins.stores]
+    made.guards = margins.guards
 
 
 def _closure_groups(derivation: Derivation) -> list[tuple[tuple[str, tuple[str, ...]], ...]]:
@@ -209,6 +226,7 @@ class _Slice:
         self.name = name
         self.arrays = arrays
         self.stores = stores
+        self.guards: list[Guard] | None = None  # None: those of the equations that are needed
 
     def statements(self, builder: Builder) -> tuple[list[Statement], list[Any]]:
         """Needed statements in order, and the guards that concern them."""
@@ -219,7 +237,7 @@ class _Slice:
             for s in builder.statements
             if s.target in needed and s.stage.depends_on_state
         }
-        guards = [
+        guards = self.guards or [
             g
             for g in builder.guards
             if g.equation in equations and g.value.free_symbols <= needed | wanted
@@ -387,6 +405,9 @@ def _shapes(derivation: Derivation) -> dict[str, tuple[int, ...]]:
         "potential": (1,),
         "constraints": (n["NC"],),
         "constraint_bias": (n["NC"],),
+        "lengths": (2,),
+        "pivots": (legs,),
+        "reach": (legs,),
     }
 
 

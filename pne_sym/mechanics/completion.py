@@ -271,7 +271,7 @@ def completed_wrenches(
             g.leg_type.name,
             tuple(vectors),
             tuple(force for force, _ in parts),
-            (*(sp.S.One if a.kind is Kind.SLIDE else g.size for a in chosen), *freedoms.scales),
+            (*(_column_size(g, a) for a in chosen), *freedoms.scales),
             tuple(frames),
             tuple(tuple(row) for row in rows),
             tuple(amounts for _, amounts in parts),
@@ -301,6 +301,11 @@ def _column(
         body=freedoms.frame,
     )
     return velocity, [Dot(a, n) for n in freedoms.directions]
+
+
+def _column_size(g: LegGeometry, auxiliary: Auxiliary) -> Any:
+    """What the column of an auxiliary direction is measured by: turns move points by lengths."""
+    return sp.S.One if auxiliary.kind is Kind.SLIDE else g.size
 
 
 def direction(book: Book, g: LegGeometry, axis: int, frame: str) -> VectorSymbol:

@@ -17,6 +17,8 @@ from pne_sym.model.kinematics import chain_pose, pose_at
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.vector import Cross, Dot, Vector, VectorSymbol, norm, vector_sum
 
+_POWERS_OF_METRE = ("-", "m", "m^2", "m^3")
+
 
 def directions_left_out(
     book: Book, g: LegGeometry, motion: Any, joints: list[int], missing: int, planar: bool
@@ -69,8 +71,9 @@ def wrenches_left_out(
     parts = [-Dot(g.e[j], n) * a for j, a in zip(joints, across, strict=True) if g.turns(j)]
     frame = g.frame("axes", g.group[g.count])
     volume = Dot(motion.v[joints[0]], across[0])
+    turning = sum(map(g.turns, joints))  # velocity vectors are lengths where a joint turns
     if g.pure_moment:
-        return [_per_unit_moment(book, g, vector_sum(parts), volume, frame, n)]
+        return [_per_unit_moment(book, g, vector_sum(parts), volume, turning, frame, n)]
     direction = book.define(
         g.name("f_c_part"),
         vector_sum(parts),
@@ -78,16 +81,17 @@ def wrenches_left_out(
         "force that with the moment does no work along the leg's freedoms",
         Law.GEOMETRY,
         body=frame,
-        unit="m^2",
+        unit=_POWERS_OF_METRE[turning - 1],
     )
+    squared = Dot(direction, direction)
     length = book.define(
         g.name("f_c_size"),
         norm(direction),
         r"\lVert\mathbf f'_c\rVert",
         "its size",
         Law.GEOMETRY,
-        unit="m^2",
-        conditions=(Condition(Trouble.SINGULAR, Dot(direction, direction), g.size**4, 2),),
+        unit=_POWERS_OF_METRE[turning - 1],
+        conditions=(Condition(Trouble.SINGULAR, squared, g.size ** (2 * turning - 2), 2),),
     )
     force = book.define(
         g.name("n_c"),
@@ -111,17 +115,17 @@ def wrenches_left_out(
 
 
 def _per_unit_moment(
-    book: Book, g: LegGeometry, force: Vector, volume: Any, frame: str, n: Vector
+    book: Book, g: LegGeometry, force: Vector, volume: Any, turning: int, frame: str, n: Vector
 ) -> LeftOut:
     """The same wrench per unit moment, for legs whose wrench has no force part at home."""
-    condition = Condition(Trouble.SINGULAR, volume, g.size**3)
+    condition = Condition(Trouble.SINGULAR, volume, g.size**turning)
     scale = book.define(
         g.name("volume_c"),
         volume,
         r"\Delta_c",
         "triple product of the velocity vectors",
         Law.GEOMETRY,
-        unit="m^3",
+        unit=_POWERS_OF_METRE[turning],
         conditions=(condition,),
     )
     direction: Vector = book.define(

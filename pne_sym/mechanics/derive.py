@@ -18,6 +18,7 @@ from pne_sym.derivation import (
 from pne_sym.mechanics.actuation import actuation
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_at_home
+from pne_sym.mechanics.conditioning import write_lengths
 from pne_sym.mechanics.constraints import axis_across, force_vanishes
 from pne_sym.mechanics.inverse_kinematics import InverseKinematics, given_displacements, invert
 from pne_sym.mechanics.leg_dynamics import DynamicsWriter, introduce_bodies
@@ -61,6 +62,7 @@ def derive(manipulator: Manipulator) -> Derivation:
     writer.equilibrium()
     writer.blocks()
     _potential(book, platform, writer, [leg for leg, _ in legs], [k for _, k in legs])
+    write_lengths(book, [leg.g for leg, _ in legs])
     book.coordinates = _coordinates(manipulator, space, [leg for leg, _ in legs])
     equal = (pair for leg, _ in legs for pair in leg.g.same_axes())
     return with_symbols(book.close(), manipulator, equal)

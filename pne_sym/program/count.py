@@ -23,6 +23,10 @@ def count_expression(expr: Any) -> Counts:
         return total + _product(expr)
     if expr.is_Pow:
         return total + _power(expr.exp)
+    if isinstance(expr, sp.Abs):
+        return total  # a sign
+    if isinstance(expr, sp.Min):
+        return total + Counts(add=len(expr.args) - 1)
     return total + Counts(trig=1)
 
 

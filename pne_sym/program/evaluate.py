@@ -274,6 +274,14 @@ def _function(function: Callable[..., Any]) -> Callable[[Any, Mapping[str, Array
     return lambda expr, values: np.asarray(function(*(value_of(a, values) for a in expr.args)))
 
 
+def _least(expr: Any, values: Mapping[str, Array]) -> Array:
+    """The least of several; not a number where one is none."""
+    first, *others = (value_of(a, values) for a in expr.args)
+    for other in others:
+        first = np.minimum(first, other)
+    return first
+
+
 _RULES: dict[Any, Callable[[Any, Mapping[str, Array]], Array]] = {
     sp.Add: _sum,
     sp.Mul: _product,
@@ -282,4 +290,6 @@ _RULES: dict[Any, Callable[[Any, Mapping[str, Array]], Array]] = {
     sp.cos: _function(np.cos),
     sp.acos: _function(np.arccos),
     sp.atan2: _function(np.arctan2),
+    sp.Abs: _function(np.abs),
+    sp.Min: _least,
 }

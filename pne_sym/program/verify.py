@@ -14,7 +14,7 @@ import sympy as sp
 
 from pne_sym.program.ir import Block, Check, Function, Program, Store
 
-_FUNCTIONS = (sp.sin, sp.cos, sp.atan2, sp.acos)
+_FUNCTIONS = (sp.sin, sp.cos, sp.atan2, sp.acos, sp.Abs, sp.Min)
 _ROOTS = (sp.Rational(1, 2), sp.Rational(-1, 2))
 _TROUBLES = ("invalid", "unreachable", "singular")
 

@@ -826,6 +826,8 @@ PLATFORM: dict[str, Callable[[PlatformFacts], Any]] = {
     "f_p": lambda p: p.force,
     "mu_p": lambda p: p.moment,
     "potential": lambda p: p.oracle.potential,
+    "b_c": lambda p: np.mean([f.arm for f in p.legs], axis=0),
+    "spread": lambda p: np.sqrt(np.sum(np.var([f.arm for f in p.legs], axis=0))),
 }
 """Quantities of the platform itself."""
 

@@ -48,7 +48,7 @@ CONSISTENT_ONLY = re.compile(
     r"|n_c\d*|f_c_part|f_c_size|mu_c|(f|size|n|mu|m\d+|mu\d+)_c\d+|volume_c|o_c|phi_c\d+|gamma_c\d+"
     r"|wn_\d+|end_l\d|t_c\d+"  # wrenches and moments come as components in some basis
     r"|n_m\d+|nd_m\d+|nu_\d+|m\d+_w_\d+"
-    r"|Hk_a_\d+|M_ya_\d+"
+    r"|Hk_a_\d+|M_ya_\d+|legs_size"
 )
 """Names that have no independent value of their own: what is made of them has one."""
 OF_CHOICE = re.compile(r"(f|size|n|mu|gamma|phi|m\d+|mu\d+)_c\d+|Hk_a_\d+")

@@ -149,7 +149,7 @@ def _pose_with_first_leg_singular(c: Case, X: Array, off: float) -> Array:
 def test_singular_drives(name: str) -> None:
     """Where det H = 0 inverse dynamics fails; M, Z, H and forward dynamics do not."""
     model = module(catalogue(name))
-    X = _pose_of_singular_drives(model)
+    X = pose_of_singular_drives(model)
     V, tau = np.linspace(-1.0, 1.0, model.NV), np.linspace(-5.0, 9.0, model.NU)
     for count in (1, MANY):
         poses = np.tile(np.array(model.HOME_X), (count, 1))
@@ -163,7 +163,7 @@ def test_singular_drives(name: str) -> None:
         assert np.isfinite(model.forward_dynamics(poses, V, tau)).all()
 
 
-def _pose_of_singular_drives(model: Any) -> Array:
+def pose_of_singular_drives(model: Any) -> Array:
     """From home about the vertical: where the determinant of H changes its sign."""
 
     def turned(yaw: float) -> Array:

@@ -63,6 +63,13 @@ def function_statements(bundle: Bundle, printer: LatexPrinter) -> Iterator[State
             "**Forward dynamics** solves the equations of motion for the acceleration:",
             (rf"\mathbf M\,\mathbf A = \mathbf H\,\boldsymbol\tau + {_W} - \mathbf Z",),
         )
+    yield Statement(
+        "**Conditioning**: `condition` returns the singular values of H, moment rows divided by "
+        r"$`\ell_b`$ ($`\ell_l`$ where it vanishes), and for every leg the least of the values "
+        "that are tested below, over its scale."
+        + (" `condition_constrained` does so for [H H_k]." if constrained else ""),
+        (),
+    )
     yield from _passive_statements(bundle.coordinates)
 
 

@@ -136,6 +136,7 @@ FUNCTIONS = {
     "constraints": "distances and angles by which the legs miss the platform",
     "legs": "leg forces, for the leg reactions",
     "potential": "potential energy",
+    "condition": "H and the least pivots, for the conditioning",
 }
 SPACES = {
     "point": "a point moving in the plane",
