@@ -19,7 +19,7 @@ from pne_sym.mechanics.actuation import actuation
 from pne_sym.model.manipulator import Joint, Manipulator
 from pne_sym.model.reader import checked
 from tests.backends.c_agreement import assert_agree, vectors
-from tests.backends.c_library import OK, SINGULAR, CLibrary
+from tests.backends.c_library import OK, SINGULAR, WARNINGS, CLibrary
 from tests.models import bundle, module
 from tests.oracle.mechanisms import mechanism
 from tests.oracle.specs import State, random_state
@@ -164,7 +164,7 @@ def bundle_is_closed(name: str) -> bool:
 @pytest.mark.parametrize("name", CASES)
 def test_c_agrees(name: str, tmp_path: Path) -> None:
     model = module(spec(name))
-    library = CLibrary(bundle(spec(name)), tmp_path, flags=("-O1",))
+    library = CLibrary(bundle(spec(name)), tmp_path, flags=("-O1", *WARNINGS))
     given = vectors(
         model, np.array(spec(name).home.X), np.array(spec(name).home.q), 11,
         np.random.default_rng(1),
