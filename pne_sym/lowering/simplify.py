@@ -126,6 +126,8 @@ def _fits(user: Any, target: Any, expr: Any) -> bool:
         return False
     if any(abs(p.exp) != sp.Rational(1, 2) for p in combined.atoms(sp.Pow) if not p.exp.is_Integer):
         return False
+    if any(p.exp.is_Integer and p.exp > 1 and not p.base.is_Symbol for p in combined.atoms(sp.Pow)):
+        return False  # a power is printed as a product: its base would be computed again
     return operations(combined) <= operations(user) + operations(expr) <= 2 * _LONGEST
 
 

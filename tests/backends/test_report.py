@@ -313,8 +313,9 @@ def test_one_more_leg_is_a_small_change() -> None:
         text_of(models.bundle(models.catalogue(n))) for n in ("stewart", "stewart_7ups")
     )
     functions = len(models.bundle(models.catalogue("stewart")).program.functions)
-    # title, names of the files, summary, case, NU, NJ, legs, their places; how H is solved
-    assert moved(before, after) <= 2 * 8 + 2 + 2 * functions
+    # title, names of the files, summary, case, NU, NJ, legs, their places; how H is solved;
+    # three means over the legs
+    assert moved(before, after) <= 2 * 8 + 2 + 2 * functions + 2 * 3
 
 
 def test_a_driven_joint_is_a_small_change() -> None:

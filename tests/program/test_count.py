@@ -56,6 +56,8 @@ class Number:
     def __neg__(self) -> Number:
         return self
 
+    __abs__ = __neg__
+
     def __pow__(self, exponent: object) -> Number:
         self.tally.powers.append(exponent)
         return self
@@ -68,6 +70,7 @@ class Functions:
         self.sqrt = lambda x: x._after("sqrt")
         self.sin = self.cos = lambda x: x._after("trig")
         self.atan2 = lambda y, x: Number(tally)._after("trig")
+        self.least = lambda x, y: Number(tally)._after("add")
 
 
 _TEXT = re.compile(r"^def (_\w+)\((.*)\):\n((?:    .*\n|\n)+)", re.MULTILINE)

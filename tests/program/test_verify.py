@@ -178,7 +178,7 @@ SPOILT: dict[str, tuple[Callable[[], Program], str]] = {
     ),
     "a symbolic power": (lambda: with_first(real("t") ** real("g2")), "outside the closed set"),
     "an exponential": (lambda: with_first(sp.exp(real("t"))), "outside the closed set"),
-    "an absolute value": (lambda: with_first(sp.Abs(real("t"))), "outside the closed set"),
+    "a sign": (lambda: with_first(sp.sign(real("t"))), "outside the closed set"),
     "a piecewise function": (
         lambda: with_first(sp.Piecewise((real("t"), real("t") > 0), (0, True))),
         "closed set",
