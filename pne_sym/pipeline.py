@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.registry import BACKENDS
+from pne_sym.home_check import check_home
 from pne_sym.lowering.program import lower
 from pne_sym.lowering.solve import SingularPatternError
 from pne_sym.mechanics.derive import derive
@@ -30,10 +31,14 @@ def compile_bundle(manipulator: Manipulator) -> Bundle:
 def compile_model(manipulator: Manipulator) -> dict[str, str]:
     """All files of a model's folder: file name -> text.
 
+    Warns with `SpecWarning` where a function has no value at home or at a pose around it.
+
     Raises:
-        SpecError: the mechanism is outside the method; the message says why.
+        SpecError: the mechanism is outside the method, or its model is not finite at home; the
+            message says why.
     """
     bundle = compile_bundle(manipulator)
+    check_home(bundle)
     files: dict[str, str] = {}
     for backend in BACKENDS:
         files.update(backend.emit(bundle))

@@ -49,12 +49,13 @@ def _close_legs(
     for _ in range(STEPS):
         gap, jacobian = gap_and_jacobian(program, closure, prepared, X[open_], q[open_])
         step = newton_step(jacobian, gap)
-        largest = np.asarray(np.max(np.abs(step), axis=(1, 2), initial=0.0))
+        largest: Array = np.max(np.abs(step), axis=(1, 2), initial=0.0)
         with np.errstate(all="ignore"):
-            step *= np.minimum(1.0, LONGEST / largest)[:, None, None]
+            shortened: Array = np.minimum(1.0, LONGEST / largest)
+        step *= shortened[:, None, None]
         q[open_[:, None, None], joints] += step
-        converged[open_[np.less_equal(largest, STEADY)]] = True
-        open_ = open_[np.greater(largest, STEADY)]
+        converged[open_[largest <= STEADY]] = True
+        open_ = open_[largest > STEADY]
         if not open_.size:
             break
     return converged
@@ -74,7 +75,7 @@ def newton_step(jacobian: Array, gap: Array) -> Array:
     """Solution of jacobian step = gap per leg, least squares where there are fewer unknowns."""
     if jacobian.shape[-1] == jacobian.shape[-2]:
         return solve(jacobian, gap)
-    known = np.isfinite(jacobian).all(axis=(-1, -2)) & np.isfinite(gap).all(axis=-1)
+    known: Flags = np.asarray(np.isfinite(jacobian).all(axis=(-1, -2)))
     inverse = np.linalg.pinv(np.where(known[..., None, None], jacobian, 0.0))
     step = np.where(known[..., None, None], inverse, np.nan) @ gap[..., None]
     return np.asarray(step[..., 0])
