@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described, describe, equation_titles
 from pne_sym.mechanics.mobility import motions_at_home
-from pne_sym.model.closure import TWIST, displaced, pose_at
 from pne_sym.model.errors import SpecError, SpecWarning
-from pne_sym.model.loops import COORDINATES
+from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
 from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.program.evaluate import Evaluation, Failure, Status, evaluate, prepare
 from pne_sym.program.iteration import close_loops
@@ -210,12 +209,12 @@ def poses_around_home(manipulator: Manipulator) -> list[Array]:
     it alone.
     """
     space, joints = manipulator.space, [j for leg in manipulator.legs for j in leg.joints]
-    twist, size = list(TWIST[space]), _size(manipulator)
+    twist, size = list(TASK_SPACES[space].components), _size(manipulator)
     slides = np.array([c < 3 for c in twist] + [j.kind is JointKind.PRISMATIC for j in joints])
     units = np.where(slides, size, 1.0)
     basis = np.linalg.qr(motions_at_home(manipulator) / units[:, None])[0]
     extra = [len(twist) + k for k, joint in enumerate(joints) if joint.extra]
-    own = len(COORDINATES[space])
+    own = len(TASK_SPACES[space].pose_names)
     X, poses = np.array(manipulator.home.X), []
     for k in (*range(len(twist)), *extra):
         motion = basis @ basis[k]

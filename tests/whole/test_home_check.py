@@ -18,9 +18,9 @@ from pne_sym.backends.bundle import Bundle
 from pne_sym.derivation.parameters import ParameterTable
 from pne_sym.generation import InputError, compile_many
 from pne_sym.home_check import STEP, check_home, poses_around_home
-from pne_sym.model.closure import pose_at
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.full_form import to_full_form
+from pne_sym.model.kinematics import pose_at
 from pne_sym.model.manipulator import Body, Manipulator
 from pne_sym.model.reader import from_text
 from pne_sym.program.evaluate import Array
