@@ -279,6 +279,9 @@ class LegTypeInfo:
         methods: per joint how inverse kinematics finds it.
         reasons: joint -> why there is no closed form.
         transmitted: number of moments that the platform joint transmits.
+        orientation: rows of the Jacobian of an iterated closure whose determinant has home's
+            sign on home's branch; none where the branch cannot be told so.
+        orientation_sign: name of that sign among the branches.
     """
 
     name: str
@@ -288,6 +291,8 @@ class LegTypeInfo:
     methods: tuple[str, ...]
     reasons: tuple[tuple[int, str], ...] = ()
     transmitted: int = 0
+    orientation: tuple[int, ...] = ()
+    orientation_sign: str = ""
 
     @property
     def is_closed(self) -> bool:

@@ -16,7 +16,8 @@ def closures(derivation: Derivation) -> tuple[Closure, ...]:
         looked_for = [j for j in range(t.joints) if t.methods[j] != "given"]
         joints = tuple(tuple(c.joints.index((i, j)) for j in looked_for) for i in t.indices)
         turning = tuple(j for leg in joints for j in leg if c.turning[j])
-        found.append(Closure(t.name, joints, turning))
+        _, signs = derivation.parameters.branches.get(t.orientation_sign, ("", ()))
+        found.append(Closure(t.name, joints, turning, t.orientation, signs, t.orientation_sign))
     return tuple(found)
 
 

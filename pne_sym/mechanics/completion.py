@@ -102,7 +102,7 @@ def completion_at_home(manipulator: Manipulator, g: LegGeometry) -> tuple[Auxili
     Wrenches that act come first.  A wrench that does no work along any motion of the platform,
     such as a moment on a platform that cannot turn, is none of the constraints.
     """
-    home = [next(_states(manipulator, g, row)) for row in range(g.leg_type.count)]
+    home = [next(leg_states(manipulator, g, row)) for row in range(g.leg_type.count)]
     missing = home[0].left_out.shape[1]
     transmitted = len(g.pairs)
     slides = [Auxiliary(Kind.SLIDE, k) for k in range(3)]
@@ -135,7 +135,7 @@ def _idle(manipulator: Manipulator, g: LegGeometry) -> int:
         return 0
     counts: list[int] = []
     for row in range(g.leg_type.count):
-        for state in _states(manipulator, g, row):
+        for state in leg_states(manipulator, g, row):
             wrenches = state.left_out
             counts.append(wrenches.shape[1] - _rank(state.effect @ wrenches))
     return min(counts)
@@ -166,7 +166,7 @@ def _has_force(states: list[_State], chosen: Sequence[Auxiliary], k: int) -> boo
     return min(forces) > _PURE
 
 
-def _states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_State]:
+def leg_states(manipulator: Manipulator, g: LegGeometry, row: int) -> Iterator[_State]:
     """A leg at home, then at other poses that it reaches, whatever the other legs do."""
     index = g.leg_type.indices[row]
     leg, space = manipulator.legs[index], manipulator.space
@@ -204,8 +204,11 @@ def _state(manipulator: Manipulator, g: LegGeometry, row: int, q: Array, pose: P
         Space.SPHERICAL: about_origin.T,
         Space.SPATIAL: np.vstack([np.eye(3, len(columns)), about_origin.T]),
     }
+    in_plane = np.zeros((0, len(columns)))  # where no wrench is asked for
     return _State(
-        columns / np.linalg.norm(columns, axis=0), effect[manipulator.space], about_origin
+        columns / np.linalg.norm(columns, axis=0),
+        effect.get(manipulator.space, in_plane),
+        about_origin,
     )
 
 

@@ -2,9 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
-from pne_sym.derivation import Book, Coordinates, Derivation, Law, LegTypeInfo, Output, Role
+from pne_sym.derivation import (
+    Book,
+    Coordinates,
+    Derivation,
+    Law,
+    LegTypeInfo,
+    Output,
+    Quantity,
+    Role,
+)
 from pne_sym.mechanics.actuation import actuation
 from pne_sym.mechanics.branches import branch_signs
 from pne_sym.mechanics.completion import completion_at_home
@@ -15,6 +25,7 @@ from pne_sym.mechanics.leg_geometry import LegGeometry, build_geometry
 from pne_sym.mechanics.leg_motion import MotionWriter
 from pne_sym.mechanics.mobility import check_solvable
 from pne_sym.mechanics.notation import with_symbols
+from pne_sym.mechanics.orientation import orientation_rows, orientation_signs
 from pne_sym.mechanics.platform_dynamics import Leg, PlatformWriter
 from pne_sym.mechanics.platform_motion import PlatformMotion, introduce_platform
 from pne_sym.mechanics.scales import define_size, home_lengths
@@ -123,7 +134,28 @@ def _derive_leg(
     _joint_outputs(book, manipulator, leg, inverse)
     if not inverse.is_closed:
         _closure_outputs(book, leg, kinematics.tip_frame(), space)
+        _orientation(book, manipulator, leg, space)
     return leg, kinematics
+
+
+def _orientation(book: Book, manipulator: Manipulator, leg: Leg, space: TaskSpace) -> None:
+    """The sign by which closures on home's branch are told from others."""
+    g = leg.g
+    completed = any(
+        basis.id == leg.name and len(basis.duals) < len(basis.vectors) for basis in book.bases
+    )
+    rows = orientation_rows(manipulator, g, planar=space.planar, completed=completed)
+    if not rows:
+        return
+    sign = Quantity(
+        g.name("sigma_closure"),
+        r"\sigma_{g}",
+        "sign of the determinant of the loop closure's derivative by the iterated displacements",
+        parameter=True,
+    )
+    book.note_quantity(sign)
+    book.parameters.add_branch(sign.name, leg.name, orientation_signs(manipulator, g, rows))
+    book.leg_types[-1] = replace(book.leg_types[-1], orientation=rows, orientation_sign=sign.name)
 
 
 def _inverse_kinematics(

@@ -207,11 +207,18 @@ class Closure:
         leg_type: name of the type.
         joints: positions in q of the displacements that are looked for, per leg.
         turning: those of all these positions that are angles.
+        rows: of the Jacobian, as many as unknowns: on home's branch their determinant has the
+            sign that it has at home; none where no sign tells the branch.
+        signs: that sign, per leg.
+        sign_name: its name among the branches.
     """
 
     leg_type: str
     joints: tuple[tuple[int, ...], ...]
     turning: tuple[int, ...]
+    rows: tuple[int, ...] = ()
+    signs: tuple[int, ...] = ()
+    sign_name: str = ""
 
     @property
     def unknowns(self) -> int:

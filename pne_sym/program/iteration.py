@@ -24,7 +24,8 @@ def close_loops(
     """Displacements that close the loops at X (states, NQ), from the guess q0 (states, NJ).
 
     Returns:
-        q (states, NJ), revolute ones in (-pi, pi], and where the iteration has converged.
+        q (states, NJ), revolute ones in (-pi, pi], and where the iteration has converged on the
+        assembly branch of home.
         Displacements with a closed form are those of the guess.
     """
     q = np.array(np.broadcast_to(q0, (len(X), q0.shape[-1])), dtype=float)
@@ -54,7 +55,8 @@ def _close_legs(
             shortened: Array = np.minimum(1.0, LONGEST / largest)
         step *= shortened[:, None, None]
         q[open_[:, None, None], joints] += step
-        converged[open_[largest <= STEADY]] = True
+        steady = largest <= STEADY
+        converged[open_[steady]] = on_home_s_branch(closure, jacobian[steady])
         open_ = open_[largest > STEADY]
         if not open_.size:
             break
@@ -69,6 +71,17 @@ def gap_and_jacobian(
     found = evaluate(program, f"closure_{name}", prepared, {"X": X, "q": q}).outputs
     jacobian = found[f"jacobian_{name}"].reshape(*found[f"gap_{name}"].shape, closure.unknowns)
     return found[f"gap_{name}"], jacobian
+
+
+def on_home_s_branch(closure: Closure, jacobian: Array) -> Flags:
+    """Whether all legs are on the side of their singular states on which they are at home.
+
+    Always so where no sign tells.
+    """
+    if not closure.rows:
+        return np.ones(len(jacobian), dtype=bool)
+    signs, _ = np.linalg.slogdet(jacobian[:, :, list(closure.rows)])
+    return np.asarray((signs * np.array(closure.signs) > 0.0).all(axis=1))
 
 
 def newton_step(jacobian: Array, gap: Array) -> Array:
