@@ -88,7 +88,7 @@ def _program_functions(bundle: Bundle, d: Described) -> list[Api]:
     M, Z, H = made("M", "NV", "NV"), made("Z", "NV"), made("H", "NV", "NU")
     branch = "on the assembly branch of home"
     if d.is_numeric:
-        branch += "; iterated ones: the closure next to q0"
+        branch += "; iterated ones: the closure reached from q0"
     rows: list[tuple[str, str, tuple[Argument, ...], tuple[Argument, ...], tuple[str, ...]]] = [
         ("M", "Inertia matrix M.", (X,), (M,), ("M",)),
         ("Z", "Velocity and gravity terms Z.", (X, V), (Z,), ("Z",)),

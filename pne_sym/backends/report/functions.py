@@ -154,7 +154,7 @@ def troubles(bundle: Bundle) -> tuple[str, ...]:
     if any(not info.is_closed for info in bundle.derivation.leg_types):
         lines.append(
             "**Not converged**: from the first guess `q0`, Newton's iteration finds no "
-            "displacements that close the loops."
+            "displacements that close the loops on the assembly branch of home."
         )
     lines += [
         (

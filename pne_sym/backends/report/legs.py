@@ -120,6 +120,36 @@ def _closing(bundle: Bundle, info: LegTypeInfo) -> Iterator[str]:
         if leg_type == info.name and name in derivation.notation:
             symbol = inline(derivation.notation[name].latex)
             yield f"Assembly branch {symbol}, as at home: {_signs(info, signs)}."
+    if not info.is_closed:
+        yield _branch(bundle, info)
+
+
+def _branch(bundle: Bundle, info: LegTypeInfo) -> str:
+    """How the branch of iterated displacements is told."""
+    if not info.orientation:
+        return (
+            "The iterated displacements are fewer than the conditions of the loop closure, and no "
+            "sign tells their branches apart: the closure is the one reached from `q0`."
+        )
+    symbol = inline(bundle.derivation.notation[info.orientation_sign].latex)
+    return (
+        f"{symbol} is the sign of the determinant of the derivative of the loop closure by the "
+        f"iterated displacements ({_conditions(bundle, info)}). Only a singular state of the leg "
+        "changes it: from the last displacements of a path in steps small against the distance "
+        "to the next one, the closure stays on the branch of home. A closure with another sign "
+        "is refused: not converged."
+    )
+
+
+def _conditions(bundle: Bundle, info: LegTypeInfo) -> str:
+    """Rows of the derivative, in words: axes of the last link, moment directions."""
+    axes = 2 if bundle.coordinates.planar else 3
+    if len(info.orientation) == axes + info.transmitted:
+        return "all conditions"
+    slides = ["xyz"[k] for k in info.orientation if k < axes]
+    turns = [str(k - axes + 1) for k in info.orientation if k >= axes]
+    parts = [f"along {', '.join(slides)} of the last link"] if slides else []
+    return " and ".join(parts + [f"about moment direction {', '.join(turns)}"] * bool(turns))
 
 
 def _signs(info: LegTypeInfo, signs: Sequence[int]) -> str:
