@@ -346,8 +346,8 @@ _INVERSE = (
 _ITERATED = (
     r"Not every joint of this leg has a closed form, so its displacements are found together, by "
     r"Newton's iteration on the loop closure from a first guess: the closure reached from it is "
-    r"taken, unless a sign tells that it is not on the assembly branch of home. All that follows is closed in pose and "
-    r"displacements."
+    r"taken, unless a sign tells that it is not on the assembly branch of home. All that follows "
+    r"is closed in pose and displacements."
 )
 _COMPOSITE = (
     r" The links of this leg turn differently, so their inertia is collected in the accelerations "
