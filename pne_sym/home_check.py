@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import Described, describe, equation_titles
+from pne_sym.backends.describe import describe, equation_titles
 from pne_sym.mechanics.mobility import motions_at_home
 from pne_sym.model.errors import SpecError, SpecWarning
 from pne_sym.model.kinematics import TASK_SPACES, displaced, pose_at
 from pne_sym.model.manipulator import JointKind, Manipulator
 from pne_sym.program.evaluate import Evaluation, Failure, Status, evaluate, prepare
+from pne_sym.program.interpret import Interpreter, PoseLayout
 from pne_sym.program.iteration import close_loops
-from pne_sym.program.linear import PIVOT, least_pivot
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -46,6 +46,10 @@ _FUNCTIONS = {  # of the program, by what is public of them
     "legs": "leg_reactions",
     "potential": "energy",
 }
+
+
+_SOLVED = ("inverse_dynamics", "leg_reactions", "complete_acceleration", "forward_dynamics")
+_UNDERDRIVEN = "fewer actuators than degrees of freedom, so that no forces give any acceleration"
 
 
 def check_home(bundle: Bundle) -> None:
@@ -116,34 +120,39 @@ class _Model:
             )
 
     def solves(self) -> Iterator[str]:
-        """Linear equations that have no solution by structure, at home, or at poses around it."""
+        """Public functions without a solution by structure, at home, or at poses around it."""
         d = describe(self.bundle)
-        dynamics = self.found["dynamics"]
-        usable = dynamics.status == Status.OK
-        inverse = "inverse_dynamics, leg_reactions"
+        failed = self._unsolved(d.sizes["NU"])
         if d.is_underdriven:
-            yield (
-                f"{inverse}: NaN at every state: fewer actuators than degrees of freedom, so that "
-                "no forces give any acceleration"
-            )
-        else:
-            forces = "[H Hk]" if d.is_constrained else "H"
-            failed = ~_spans(dynamics, d) & usable
-            yield from self._told(inverse, failed, f"{forces} is singular")
-        why = (
-            "the matrix of accelerations and multipliers is singular: a motion without inertia, "
-            "or constraints that depend on one another"
-            if d.is_constrained
-            else "M is singular: a motion without inertia"
-        )
-        singular = ~(least_pivot(_mass_matrix(dynamics)) > PIVOT)
-        yield from self._told("forward_dynamics", singular & usable, why)
+            never = [name for name, states in failed.items() if states.all()]
+            yield f"{_listed(never)}: NaN at every state: {_UNDERDRIVEN}"
+            failed = {name: states for name, states in failed.items() if name not in never}
+        reasons: dict[str, list[str]] = {}
+        for name in failed:
+            reasons.setdefault(_singular(name, constrained=d.is_constrained), []).append(name)
+        for reason, names in reasons.items():
+            yield from self._told(names, np.any([failed[n] for n in names], axis=0), reason)
 
-    def _told(self, functions: str, failed: Flags, why: str) -> Iterator[str]:
+    def _unsolved(self, actuators: int) -> dict[str, Flags]:
+        """Functions that solve linear equations -> states at which these have no solution."""
+        c, program = self.bundle.coordinates, self.bundle.program
+        layout = PoseLayout(sum(name in "xyz" for name in c.pose), c.has_quaternion)
+        home_q = np.array(c.home[1])
+        model = Interpreter(program, program.public, self.prepared, home_q, layout)
+        given = {**self.vectors, "tau": np.ones((len(self.vectors["X"]), actuators))}
+        usable = self.converged & (self.found["dynamics"].status == Status.OK)
+        found = {}
+        for name in _SOLVED:
+            if name in model.functions:
+                inputs = {a.name: given[a.name] for a in model.functions[name].required}
+                found[name] = (model.call(name, **inputs).status != Status.OK) & usable
+        return {name: states for name, states in found.items() if states.any()}
+
+    def _told(self, functions: list[str], failed: Flags, why: str) -> Iterator[str]:
         if failed[:_AT_HOME].any():
-            yield f"home: {functions} NaN there: {why}"
-        elif failed.any():
-            yield f"home: {functions} NaN at {_share(failed[_AT_HOME:])} around it: {why}"
+            yield f"home: {_listed(functions)} NaN there: {why}"
+        else:
+            yield f"home: {_listed(functions)} NaN at {_share(failed[_AT_HOME:])} around it: {why}"
 
     # ---- reasons ---------------------------------------------------------------------
 
@@ -237,26 +246,18 @@ def _size(manipulator: Manipulator) -> float:
     return size if size > 0.0 else 1.0
 
 
-def _mass_matrix(dynamics: Evaluation) -> Array:
-    """What forward dynamics solves: M, or with constraints M, -Hk; Hk^T, 0."""
-    M, Hk = dynamics.outputs["M"], dynamics.outputs.get("Hk")
-    if Hk is None:
-        return M
-    corner = np.zeros((len(M), Hk.shape[2], Hk.shape[2]))
-    return np.block([[M, -Hk], [np.swapaxes(Hk, 1, 2), corner]])
-
-
-def _spans(dynamics: Evaluation, d: Described) -> Flags:
-    """Whether the rows from which the forces are found are independent, by state."""
-    parts = [dynamics.outputs[name] for name in ("H", "Hk") if name in dynamics.outputs]
-    facts = d.actuation
-    rows = np.take(np.concatenate(parts, axis=2), facts.solved, axis=1)
-    if rows.shape[1] == rows.shape[2] and not facts.surplus:
-        return np.asarray(least_pivot(rows) > PIVOT)
-    size = np.max(np.abs(rows), axis=2, keepdims=True, initial=0.0)
-    rows = np.nan_to_num(rows / np.where(size > 0.0, size, 1.0))
-    values = np.linalg.svd(rows, compute_uv=False)
-    return np.asarray(values[:, facts.rank - 1] > PIVOT * values[:, 0])
+def _singular(function: str, *, constrained: bool) -> str:
+    """Why a function has no solution."""
+    if function in ("inverse_dynamics", "leg_reactions"):
+        return f"{'[H Hk]' if constrained else 'H'} is singular"
+    if function != "forward_dynamics":
+        return "the equations of the passive extra coordinates are singular"
+    if constrained:
+        return (
+            "the matrix of accelerations and multipliers is singular: a motion without inertia, "
+            "or constraints that depend on one another"
+        )
+    return "M is singular: a motion without inertia"
 
 
 def _listed(functions: Iterable[str]) -> str:
