@@ -122,7 +122,7 @@ size_t arm_weight_batch(const arm_model *model, size_t n, const arm_real *X, arm
         ("", "", ""),
         ("X[0];", "X[9];", "out of bounds read"),
         ("i < n;", "i <= n;", "out of bounds"),
-        ("model->mass*X[0]", "model->mass*X[0]/(X[0] - 1)", "non-finite double value"),
+        ("model->mass*X[0]", "model->mass*X[0]/(X[0] - 1.02)", "non-finite double value"),
         ("    weight[0] = model", "    double w;\n    weight[0] = w*model", "uninitialized"),
     ],
 )
