@@ -186,14 +186,6 @@ def motions_at_home(manipulator: Manipulator) -> Array:
     return null_space(_closure(manipulator)[0])
 
 
-def motions_at_home(manipulator: Manipulator) -> Array:
-    """Rates of the platform (its free twist components) and of all joints that keep loops closed.
-
-    Orthonormal columns, one for every degree of freedom at home.
-    """
-    return null_space(_closure(manipulator)[0])
-
-
 def null_space(matrix: Array) -> Array:
     """Orthonormal columns that a matrix maps to zero."""
     _, values, vt = np.linalg.svd(matrix)
