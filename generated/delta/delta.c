@@ -3,6 +3,12 @@
 
 #include "delta.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(DELTA_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define DELTA_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef delta_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -295,32 +333,32 @@ const delta_real delta_HOME_Q[DELTA_NJ] = {R(-1.2), R(1.4), R(0.1), R(-1.2), R(1
 static int acceptable(const delta_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->rus_base_point[0][0], 9);
-    ok &= all_finite(&p->rus_base_frame[0][0][0], 27);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rus_base_point[0][0], 9);
+    ok &= all_within(&p->rus_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->rus_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->rus_platform_point[0][0], 9);
-    ok &= all_finite(&p->rus_joint2_offset[0][0], 9);
+    ok &= all_within(&p->rus_platform_point[0][0], 9);
+    ok &= all_within(&p->rus_joint2_offset[0][0], 9);
     ok &= all_zero(&p->rus_joint2_offset[0][0] + 1, 3, 3);
     ok &= all_zero(&p->rus_joint2_offset[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->rus_platform_joint_offset[0][0], 9);
+    ok &= all_within(&p->rus_platform_joint_offset[0][0], 9);
     ok &= all_zero(&p->rus_platform_joint_offset[0][0] + 1, 3, 3);
     ok &= all_zero(&p->rus_platform_joint_offset[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->rus_link1_mass[0], 3);
+    ok &= all_within(&p->rus_link1_mass[0], 3);
     ok &= none_negative(&p->rus_link1_mass[0], 3);
-    ok &= all_finite(&p->rus_link1_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->rus_link1_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->rus_link1_inertia[0][0][0], 3);
-    ok &= all_finite(&p->rus_link3_mass[0], 3);
+    ok &= all_within(&p->rus_link1_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->rus_link1_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->rus_link1_inertia[0][0][0], 3);
+    ok &= all_within(&p->rus_link3_mass[0], 3);
     ok &= none_negative(&p->rus_link3_mass[0], 3);
-    ok &= all_finite(&p->rus_link3_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->rus_link3_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->rus_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->rus_link3_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->rus_link3_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->rus_link3_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -334,6 +372,10 @@ int delta_prepare(const delta_params *params, delta_model *model)
     real total_rus_x = 0;
     real total_rus_y = 0;
     real total_rus_z = 0;
+    real total_rus_x_2 = 0;
+    real total_rus_y_2 = 0;
+    real total_rus_z_2 = 0;
+    real total_rus_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -345,9 +387,12 @@ int delta_prepare(const delta_params *params, delta_model *model)
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real rus_base_point_x = params->rus_base_point[leg][0];
         const real rus_base_point_y = params->rus_base_point[leg][1];
@@ -392,27 +437,23 @@ int delta_prepare(const delta_params *params, delta_model *model)
         const real Kd_1_t = rus_joint2_offset_x*rus_joint2_offset_x;
         const real Kd_1_t_2 = R(0.5)*Kd_1_t;
         const real Kd_1_t_3 = R(0.5)*uu_3_t;
-        /* (rus-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = rus_base_point_x*rus_base_point_x + rus_base_point_y*rus_base_point_y
-            + rus_base_point_z*rus_base_point_z;
-        const real size_t_2 = rus_platform_point_x*rus_platform_point_x +
-            rus_platform_point_y*rus_platform_point_y + rus_platform_point_z*rus_platform_point_z;
-        const real size_t_3 = Kd_1_t + size_t_ + size_t_2 + uu_3_t;
-        const real size_ = root(size_t_3);
+        /* (rus-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_t_ = R(5.72469284689e-07) + Kd_1_t + uu_3_t;
+        const real size_ = root(size_t_);
         /* (rus-K8) squared amplitude */
-        const real rho2_1_t = size_*size_*size_t_3;
+        const real rho2_1_t = size_*size_*size_t_;
         /* (rus-K15) the vector from joint 1 to the connection point, resolved along link 1 */
         const real inv_Kd_1_t_6 = 1/Kd_1_t;
         /* (rus-K28) cosine of the angle of joint 3 from its reference direction */
         const real inv_uu_3_t = 1/uu_3_t;
-        /* (rus-G3) inertia tensor of link 1 about the origin of link 1 */
+        /* (rus-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_t = rus_link1_centre_of_mass_z*rus_link1_centre_of_mass_z;
         const real J_1_t_2 = J_1_t + rus_link1_centre_of_mass_x*rus_link1_centre_of_mass_x +
             rus_link1_centre_of_mass_y*rus_link1_centre_of_mass_y;
         const real J_1_zz = rus_link1_inertia_zz - rus_link1_mass*(J_1_t - J_1_t_2);
-        /* (rus-G4) connection point to the centre of mass of link 3 */
+        /* (rus-G5) connection point to the centre of mass of link 3 */
         const real rho_tip_3_x = rus_link3_centre_of_mass_x - rus_platform_joint_offset_x;
-        /* (rus-G6) inertia tensor of link 3 about the connection point */
+        /* (rus-G7) inertia tensor of link 3 about the connection point */
         const real J_3_t = rho_tip_3_x*rho_tip_3_x;
         const real J_3_t_2 = rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_y;
         const real J_3_t_3 = rus_link3_centre_of_mass_z*rus_link3_centre_of_mass_z;
@@ -426,7 +467,7 @@ int delta_prepare(const delta_params *params, delta_model *model)
         const real J_3_yz = rus_link3_inertia_yz -
             rus_link3_centre_of_mass_y*rus_link3_centre_of_mass_z*rus_link3_mass;
         const real J_3_zz = rus_link3_inertia_zz - rus_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (rus-G5) first moment of link 3 about the connection point */
+        /* (rus-G6) first moment of link 3 about the connection point */
         const real h_3_x = rho_tip_3_x*rus_link3_mass;
         const real h_3_y = rus_link3_centre_of_mass_y*rus_link3_mass;
         const real h_3_z = rus_link3_centre_of_mass_z*rus_link3_mass;
@@ -451,7 +492,7 @@ int delta_prepare(const delta_params *params, delta_model *model)
             gravity_z*rus_base_frame_zy;
         const real g_r0_z = gravity_x*rus_base_frame_xz + gravity_y*rus_base_frame_yz +
             gravity_z*rus_base_frame_zz;
-        /* (rus-G2) first moment of link 1 about the origin of link 1 */
+        /* (rus-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_x = rus_link1_centre_of_mass_x*rus_link1_mass;
         const real h_1_y = rus_link1_centre_of_mass_y*rus_link1_mass;
         const real h_1_z = rus_link1_centre_of_mass_z*rus_link1_mass;
@@ -472,6 +513,12 @@ int delta_prepare(const delta_params *params, delta_model *model)
             rus_base_frame_yy*rus_base_point_y + rus_base_frame_zy*rus_base_point_z;
         const real potential_t = rus_link1_mass*(rus_base_frame_xz*rus_base_point_x +
             rus_base_frame_yz*rus_base_point_y + rus_base_frame_zz*rus_base_point_z);
+        /* (rus-K8) squared amplitude */
+        const real inv_rho2_1_t_4 = 1/rho2_1_t;
+        /* (rus-K20) squared amplitude */
+        const real inv_size_t = 1/size_t_;
+        /* (rus-V6) reciprocal vector 1 */
+        const real inv_size = 1/size_;
         model->J_1_zz[leg] = J_1_zz;
         model->J_3_xx[leg] = J_3_xx;
         model->J_3_xy[leg] = J_3_xy;
@@ -501,7 +548,10 @@ int delta_prepare(const delta_params *params, delta_model *model)
         model->h_3_y[leg] = h_3_y;
         model->h_3_z[leg] = h_3_z;
         model->inv_Kd_1_t_6[leg] = inv_Kd_1_t_6;
+        model->inv_rho2_1_t_4[leg] = inv_rho2_1_t_4;
         model->inv_rus_platform_joint_offset_x[leg] = inv_rus_platform_joint_offset_x;
+        model->inv_size[leg] = inv_size;
+        model->inv_size_t[leg] = inv_size_t;
         model->inv_uu_3_t[leg] = inv_uu_3_t;
         model->potential_t[leg] = potential_t;
         model->rho2_1_t[leg] = rho2_1_t;
@@ -525,11 +575,15 @@ int delta_prepare(const delta_params *params, delta_model *model)
         model->rus_platform_point_y[leg] = rus_platform_point_y;
         model->rus_platform_point_z[leg] = rus_platform_point_z;
         model->size_[leg] = size_;
-        model->size_t_3[leg] = size_t_3;
+        model->size_t_[leg] = size_t_;
         total_rus += rus_link3_mass;
         total_rus_x += h_star_t_4;
         total_rus_y += h_star_t_5;
         total_rus_z += h_star_t_6;
+        total_rus_x_2 += rus_platform_point_x;
+        total_rus_y_2 += rus_platform_point_y;
+        total_rus_z_2 += rus_platform_point_z;
+        total_rus_2 += size_t_;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rus;
@@ -541,12 +595,22 @@ int delta_prepare(const delta_params *params, delta_model *model)
     const real h_star_x = h_star_t + total_rus_x;
     const real h_star_y = h_star_t_2 + total_rus_y;
     const real h_star_z = h_star_t_3 + total_rus_z;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_rus_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_rus_y_2;
+    const real b_c_z = R(0.3333333333333333)*total_rus_z_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = spread_t*root(total_rus_2);
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
     model->Z_p_z = Z_p_z;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return DELTA_OK;
 }
@@ -556,6 +620,9 @@ int delta_prepare(const delta_params *params, delta_model *model)
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -565,23 +632,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -589,6 +653,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -617,47 +682,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -678,7 +746,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -755,9 +823,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -792,8 +862,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -961,7 +1031,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -1045,7 +1115,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        /* (rus-G6) inertia tensor of link 3 about the connection point */
+        /* (rus-G7) inertia tensor of link 3 about the connection point */
         const real _y = J_3_xy*s_3 + J_3_yz*c_3;
         const real _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3);
         /* (rus-V6) reciprocal vector 1 */
@@ -1220,7 +1290,7 @@ INLINE void dynamics_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         o->entry[1][k] = -w_1_t_4;
         o->entry[2][k] = -w_1_t_5;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -1399,7 +1469,7 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -1483,7 +1553,7 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
             axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z;
         const real axis_x_rus_axes3_z = axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
             axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x;
-        /* (rus-G6) inertia tensor of link 3 about the connection point */
+        /* (rus-G7) inertia tensor of link 3 about the connection point */
         const real _y = J_3_xy*s_3 + J_3_yz*c_3;
         const real _y_2 = s_3*(J_3_xx*s_3 + J_3_xz*c_3) - c_3*(-J_3_xz*s_3 - J_3_zz*c_3);
         /* (rus-V6) reciprocal vector 1 */
@@ -1558,7 +1628,7 @@ INLINE void M_legs_rus(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[4][k] = add ? o->sum[4][k] + Q_t_17 : Q_t_17;  /* total_rus_yz */
         o->sum[5][k] = add ? o->sum[5][k] + Q_t_19 : Q_t_19;  /* total_rus_zz */
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -1728,7 +1798,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -1909,7 +1979,7 @@ INLINE void Z_legs_rus(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_rus_y */
         o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_rus_z */
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -2043,7 +2113,7 @@ INLINE void H_legs_rus(const prepared *m, size_t leg, size_t legs, const H_value
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -2126,7 +2196,7 @@ INLINE void H_legs_rus(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[1][k] = -w_1_t_4;
         o->entry[2][k] = -w_1_t_5;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -2294,7 +2364,7 @@ INLINE void required_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -2488,7 +2558,7 @@ INLINE void required_legs_rus(const prepared *m, size_t leg, size_t legs, const 
         o->entry[1][k] = -w_1_t_4;
         o->entry[2][k] = -w_1_t_5;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -2613,7 +2683,7 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t leg, size_t le
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -2662,7 +2732,7 @@ INLINE void inverse_kinematics_legs_rus(const prepared *m, size_t leg, size_t le
         o->entry[1][k] = q_2;
         o->entry[2][k] = q_3;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
 }
@@ -2782,7 +2852,7 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t leg, size_t legs, con
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -2876,7 +2946,7 @@ INLINE void joint_rates_legs_rus(const prepared *m, size_t leg, size_t legs, con
         o->entry[1][k] = qd_2;
         o->entry[2][k] = qd_3;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -3015,7 +3085,7 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t leg, size_t l
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -3142,7 +3212,7 @@ INLINE void joint_accelerations_legs_rus(const prepared *m, size_t leg, size_t l
         o->entry[1][k] = qdd_2;
         o->entry[2][k] = -qdd_3;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -3298,7 +3368,7 @@ INLINE void legs_legs_rus(const prepared *m, size_t leg, size_t legs, const legs
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -3496,7 +3566,7 @@ INLINE void legs_legs_rus(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[4][k] = -w_1_t_4;
         o->entry[5][k] = -w_1_t_5;
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(r_1_t) >
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
             TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
@@ -3617,7 +3687,7 @@ INLINE void potential_legs_rus(const prepared *m, size_t leg, size_t legs, const
         const real rus_platform_point_x = m->rus_platform_point_x[i];
         const real rus_platform_point_y = m->rus_platform_point_y[i];
         const real rus_platform_point_z = m->rus_platform_point_z[i];
-        const real size_t_3 = m->size_t_3[i];
+        const real size_t_ = m->size_t_[i];
         /* (rus-K1) from the base point to the connection point */
         const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
         const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
@@ -3674,7 +3744,7 @@ INLINE void potential_legs_rus(const prepared *m, size_t leg, size_t legs, const
             h_3_y*s_2 + rus_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1));
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rus */
         o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_);
         o->unreachable[k] = UNLESS(disc_1 >= 0);
     }
 }
@@ -3727,6 +3797,238 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 262 mul, 147 add, 9 div, 13 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[5][8], unreachable[8], singular[8];
+} condition_results_rus;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        lengths[1*w + k] = legs_size;
+    }
+}
+
+INLINE void condition_legs_rus(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rus *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real Kd_1_t_2 = m->Kd_1_t_2[i];
+        const real Kd_1_t_3 = m->Kd_1_t_3[i];
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real inv_Kd_1_t_6 = m->inv_Kd_1_t_6[i];
+        const real inv_rho2_1_t_4 = m->inv_rho2_1_t_4[i];
+        const real inv_size = m->inv_size[i];
+        const real inv_size_t = m->inv_size_t[i];
+        const real inv_uu_3_t = m->inv_uu_3_t[i];
+        const real rho2_1_t = m->rho2_1_t[i];
+        const real rus_base_frame_xx = m->rus_base_frame_xx[i];
+        const real rus_base_frame_xy = m->rus_base_frame_xy[i];
+        const real rus_base_frame_xz = m->rus_base_frame_xz[i];
+        const real rus_base_frame_yx = m->rus_base_frame_yx[i];
+        const real rus_base_frame_yy = m->rus_base_frame_yy[i];
+        const real rus_base_frame_yz = m->rus_base_frame_yz[i];
+        const real rus_base_frame_zx = m->rus_base_frame_zx[i];
+        const real rus_base_frame_zy = m->rus_base_frame_zy[i];
+        const real rus_base_frame_zz = m->rus_base_frame_zz[i];
+        const real rus_base_point_x = m->rus_base_point_x[i];
+        const real rus_base_point_y = m->rus_base_point_y[i];
+        const real rus_base_point_z = m->rus_base_point_z[i];
+        const real rus_joint2_offset_x = m->rus_joint2_offset_x[i];
+        const real rus_platform_joint_offset_x = m->rus_platform_joint_offset_x[i];
+        const real rus_platform_point_x = m->rus_platform_point_x[i];
+        const real rus_platform_point_y = m->rus_platform_point_y[i];
+        const real rus_platform_point_z = m->rus_platform_point_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_ = m->size_t_[i];
+        /* (rus-K1) from the base point to the connection point */
+        const real S_x = rus_platform_point_x + t_x - rus_base_point_x;
+        const real S_y = rus_platform_point_y + t_y - rus_base_point_y;
+        const real S_z = rus_platform_point_z + t_z - rus_base_point_z;
+        /* (rus-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real Kd_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
+        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
+        /* (rus-K3) component along the reference direction */
+        const real px_1 = S_x*rus_base_frame_xx + S_y*rus_base_frame_yx + S_z*rus_base_frame_zx;
+        /* (rus-K6) factor of the cosine in the equation of joint 1 */
+        const real Kc_1 = px_1*rus_joint2_offset_x;
+        /* (rus-K4) component across the reference direction */
+        const real py_1 = S_x*rus_base_frame_xy + S_y*rus_base_frame_yy + S_z*rus_base_frame_zy;
+        /* (rus-K7) factor of the sine in the equation of joint 1 */
+        const real Ks_1 = py_1*rus_joint2_offset_x;
+        /* (rus-K8) squared amplitude */
+        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
+        /* (rus-K9) discriminant */
+        const real disc_1 = rho2_1 - Kd_1*Kd_1;
+        /* (rus-K10) root, with the sign of the branch */
+        const real root_1 = branch_1*root(disc_1);
+        /* (rus-K15) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = inv_Kd_1_t_6*root_1*rus_joint2_offset_x;
+        const real xi_1_t_2 = S_x*rus_base_frame_xz + S_y*rus_base_frame_yz +
+            S_z*rus_base_frame_zz;
+        /* (rus-K16) from the origin of joint 2 to the connection point */
+        const real x_2_x = Kd_1*inv_Kd_1_t_6*rus_joint2_offset_x - rus_joint2_offset_x;
+        /* (rus-K20) squared amplitude */
+        const real rho2_2 = x_2_x*x_2_x + xi_1_t*xi_1_t;
+        /* (rus-K22) root, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (rus-K28) cosine of the angle of joint 3 from its reference direction */
+        const real c_3 = inv_uu_3_t*root_2*rus_platform_joint_offset_x;
+        /* (rus-K29) sine of the angle of joint 3 from its reference direction */
+        const real s_3 = inv_uu_3_t*rus_platform_joint_offset_x*xi_1_t_2;
+        /* (rus-V2) from joint 1 to the connection point, along the links */
+        const real r_1_t = c_3*rus_platform_joint_offset_x;
+        /* (rus-K23) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rho2_2 = 1/rho2_2;
+        const real c_2 = inv_rho2_2*root_2*xi_1_t;
+        /* (rus-K24) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_rho2_2*root_2*x_2_x;
+        /* (rus-V2) from joint 1 to the connection point, along the links */
+        const real r_1_x = rus_joint2_offset_x + r_1_t*s_2;
+        /* (rus-V3) velocity of the connection point per rate of joint 1 */
+        const real v_1_t = c_3*(c_2*r_1_x - c_2*r_1_t*s_2);
+        /* (rus-K11) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rho2_1 = 1/rho2_1;
+        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
+        /* (rus-K12) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
+        /* (rus-V6) reciprocal vector 1 */
+        const real axis_z_rus_axes3_r3_x = c_1*c_2 - s_1*s_2;
+        const real axis_z_rus_axes3_r3_y = c_1*s_2 + c_2*s_1;
+        const real axis_z_rus_axes3_in_base_x = axis_z_rus_axes3_r3_x*rus_base_frame_xx +
+            axis_z_rus_axes3_r3_y*rus_base_frame_xy;
+        const real axis_z_rus_axes3_in_base_y = axis_z_rus_axes3_r3_x*rus_base_frame_yx +
+            axis_z_rus_axes3_r3_y*rus_base_frame_yy;
+        const real axis_z_rus_axes3_in_base_z = axis_z_rus_axes3_r3_x*rus_base_frame_zx +
+            axis_z_rus_axes3_r3_y*rus_base_frame_zy;
+        const real w_1_t = s_2*s_3;
+        const real w_1_t_2 = c_2*s_3;
+        const real axis_y_rus_axes3_r3_x = c_1*w_1_t + s_1*w_1_t_2;
+        const real axis_y_rus_axes3_r3_y = s_1*w_1_t - c_1*w_1_t_2;
+        const real axis_y_rus_axes3_in_base_x = axis_y_rus_axes3_r3_x*rus_base_frame_xx +
+            axis_y_rus_axes3_r3_y*rus_base_frame_xy - c_3*rus_base_frame_xz;
+        const real axis_y_rus_axes3_in_base_y = axis_y_rus_axes3_r3_x*rus_base_frame_yx +
+            axis_y_rus_axes3_r3_y*rus_base_frame_yy - c_3*rus_base_frame_yz;
+        const real axis_y_rus_axes3_in_base_z = axis_y_rus_axes3_r3_x*rus_base_frame_zx +
+            axis_y_rus_axes3_r3_y*rus_base_frame_zy - c_3*rus_base_frame_zz;
+        const real inv_v_1_t = 1/v_1_t;
+        const real w_1_t_3 = inv_v_1_t*(axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_z -
+            axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_y);
+        const real w_1_t_4 = inv_v_1_t*(axis_y_rus_axes3_in_base_z*axis_z_rus_axes3_in_base_x -
+            axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_z);
+        const real w_1_t_5 = inv_v_1_t*(axis_y_rus_axes3_in_base_x*axis_z_rus_axes3_in_base_y -
+            axis_y_rus_axes3_in_base_y*axis_z_rus_axes3_in_base_x);
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - rus_platform_point_x;
+        const real spread_t_3 = b_c_y - rus_platform_point_y;
+        const real spread_t_4 = b_c_z - rus_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (rus-K8) squared amplitude */
+        const real pivot_size = magnitude(rho2_1);
+        /* (rus-K20) squared amplitude */
+        const real pivot_size_2 = magnitude(rho2_2);
+        /* (rus-V6) reciprocal vector 1 */
+        const real pivot_size_3 = magnitude(r_1_t);
+        const real pivot_size_4 = magnitude(v_1_t);
+        /* (rus-N37) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(lesser(lesser(root(inv_rho2_1_t_4*pivot_size),
+            inv_size*pivot_size_3), inv_size*pivot_size_4), root(inv_size_t*pivot_size_2));
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_rus */
+        o->entry[0][k] = -w_1_t_3;
+        o->entry[1][k] = -w_1_t_4;
+        o->entry[2][k] = -w_1_t_5;
+        o->entry[3][k] = least_pivots;
+        o->entry[4][k] = disc_1;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) + UNLESS(magnitude(r_1_t) >
+            TOLERANCE*size_) + UNLESS(magnitude(-v_1_t) > TOLERANCE*size_);
+        o->unreachable[k] = UNLESS(disc_1 >= 0);
+    }
+}
+
+INLINE void condition_place_rus(size_t w, const condition_results_rus *o, size_t leg, size_t
+    first, real *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        pivots[(leg)*w + k] = o->entry[3][first + k];
+        reach[(leg)*w + k] = o->entry[4][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rus = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_rus);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_rus results_rus;
+    condition_before(m, w, X, s, lengths);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rus(m, 0, 1, s, 0, 3, 0, &results_rus);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_rus(w, &results_rus, leg, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rus.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rus.sum, 0, sizeof results_rus.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_rus(m, leg, 0, s, 1, w, 1, &results_rus);
+            condition_place_rus(w, &results_rus, leg, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rus.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -3806,12 +4108,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int delta_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 3) ? DELTA_OK : DELTA_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 3, 1, &code, completed);
     return code;
 }
@@ -3862,12 +4165,16 @@ int delta_energy(const prepared *m, const real *X, const real *V, real *kinetic,
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 3, 6};
     real q[9];
     int code = delta_inverse_kinematics(m, X, q);
+    if (code != DELTA_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -3885,8 +4192,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[9];
     int code = delta_H(m, X, H);
-    fill_rows(3, H, gap, a);
     if (code == DELTA_OK) {
+        fill_rows(3, H, gap, a);
         least_squares(3, 3, a, step);
     }
     return code;
@@ -3895,7 +4202,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int delta_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 3 };
-    real found[3], gap[GAPS], trial[3], next[GAPS], step[3];
+    real found[3], gap[GAPS] = {0}, trial[3] = {0}, next[GAPS] = {0}, step[3] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : DELTA_INVALID;
@@ -3924,6 +4231,97 @@ int delta_forward_kinematics(const prepared *m, const real *q_actuated, const re
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(3, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    check(9, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int delta_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[9], a[9], found[3], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != DELTA_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(3, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 /* ---- one state, and batches ---- */
 
 int delta_M(const delta_model *model, const delta_real *X, delta_real *M)
@@ -3940,6 +4338,11 @@ size_t delta_M_batch(const delta_model *model, size_t n, const delta_real *X, de
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_M(model, X + 3*(i + k), M + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3963,6 +4366,11 @@ size_t delta_Z_batch(const delta_model *model, size_t n, const delta_real *X, co
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3986,6 +4394,11 @@ size_t delta_H_batch(const delta_model *model, size_t n, const delta_real *X, de
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_H(model, X + 3*(i + k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4010,6 +4423,12 @@ size_t delta_dynamics_batch(const delta_model *model, size_t n, const delta_real
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k), H +
+                    9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4033,6 +4452,11 @@ size_t delta_inverse_kinematics_batch(const delta_model *model, size_t n, const 
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 3*i, q + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_inverse_kinematics(model, X + 3*(i + k), q + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4057,6 +4481,11 @@ size_t delta_joint_rates_batch(const delta_model *model, size_t n, const delta_r
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4081,6 +4510,12 @@ size_t delta_joint_accelerations_batch(const delta_model *model, size_t n, const
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    accelerations + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4106,6 +4541,12 @@ size_t delta_inverse_dynamics_batch(const delta_model *model, size_t n, const de
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench ?
+                    wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4132,6 +4573,12 @@ size_t delta_forward_dynamics_batch(const delta_model *model, size_t n, const de
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != DELTA_OK) {
+                codes[k] = delta_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k), wrench ?
+                    wrench + 3*(i + k) : NULL, A + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4143,11 +4590,13 @@ size_t delta_forward_dynamics_batch(const delta_model *model, size_t n, const de
 }
 
 size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, const delta_real *X,
-    const delta_real *V, const delta_real *A, delta_real *completed, int *status)
+    const delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *completed, int
+    *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = delta_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, completed + 3*i);
+        const int code = delta_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench +
+            3*i : NULL, completed + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4182,6 +4631,17 @@ size_t delta_forward_kinematics_batch(const delta_model *model, size_t n, const 
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = delta_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t delta_condition_batch(const delta_model *model, size_t n, const delta_real *X, delta_real
+    *sigma, delta_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = delta_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask delta_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so delta.c refuses them unless DELTA_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as DELTA_OK.
  */
 #ifndef DELTA_H_INCLUDED
 #define DELTA_H_INCLUDED
@@ -87,29 +93,32 @@ typedef struct {
 
 /* What depends on the parameters alone; set by delta_prepare, then only read. */
 typedef struct {
-    delta_real Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
-            m_star;
+    delta_real Z_p_x, Z_p_y, Z_p_z, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z, h_star_x,
+            h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type rus */
     delta_real J_1_zz[3], J_3_xx[3], J_3_xy[3], J_3_xz[3], J_3_yz[3], J_3_zz[3], Kd_1_t_2[3],
             Kd_1_t_3[3], Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3], b_r0_x[3], b_r0_y[3],
             branch_1[3], branch_2[3], d_Gamma_3_t[3], d_Gamma_3_y[3], d_c_yy[3], d_phi_3_t[3],
             g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3], h_1_y[3], h_1_z[3], h_3_x[3], h_3_y[3],
-            h_3_z[3], inv_Kd_1_t_6[3], inv_rus_platform_joint_offset_x[3], inv_uu_3_t[3],
-            potential_t[3], rho2_1_t[3], rus_base_frame_xx[3], rus_base_frame_xy[3],
-            rus_base_frame_xz[3], rus_base_frame_yx[3], rus_base_frame_yy[3], rus_base_frame_yz[3],
-            rus_base_frame_zx[3], rus_base_frame_zy[3], rus_base_frame_zz[3], rus_base_point_x[3],
-            rus_base_point_y[3], rus_base_point_z[3], rus_joint2_offset_x[3], rus_link1_mass[3],
-            rus_link3_mass[3], rus_platform_joint_offset_x[3], rus_platform_point_x[3],
-            rus_platform_point_y[3], rus_platform_point_z[3], size_[3], size_t_3[3];
+            h_3_z[3], inv_Kd_1_t_6[3], inv_rho2_1_t_4[3], inv_rus_platform_joint_offset_x[3],
+            inv_size[3], inv_size_t[3], inv_uu_3_t[3], potential_t[3], rho2_1_t[3],
+            rus_base_frame_xx[3], rus_base_frame_xy[3], rus_base_frame_xz[3], rus_base_frame_yx[3],
+            rus_base_frame_yy[3], rus_base_frame_yz[3], rus_base_frame_zx[3], rus_base_frame_zy[3],
+            rus_base_frame_zz[3], rus_base_point_x[3], rus_base_point_y[3], rus_base_point_z[3],
+            rus_joint2_offset_x[3], rus_link1_mass[3], rus_link3_mass[3],
+            rus_platform_joint_offset_x[3], rus_platform_point_x[3], rus_platform_point_y[3],
+            rus_platform_point_z[3], size_[3], size_t_[3];
 } delta_model;
 
 extern const delta_params delta_default_params;
 extern const delta_real delta_HOME_X[DELTA_NQ];
 extern const delta_real delta_HOME_Q[DELTA_NJ];
 
-/* Prepare a model.  DELTA_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  DELTA_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int delta_prepare(const delta_params *params, delta_model *model);
 
 /* Inertia matrix M. 516 mul, 324 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -172,12 +181,13 @@ int delta_forward_dynamics(const delta_model *model, const delta_real *X, const 
 size_t delta_forward_dynamics_batch(const delta_model *model, size_t n, const delta_real *X, const
     delta_real *V, const delta_real *tau, const delta_real *wrench, delta_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int delta_complete_acceleration(const delta_model *model, const delta_real *X, const delta_real
-    *V, const delta_real *A, delta_real *completed);
+    *V, const delta_real *A, const delta_real *wrench, delta_real *completed);
 size_t delta_complete_acceleration_batch(const delta_model *model, size_t n, const delta_real *X,
-    const delta_real *V, const delta_real *A, delta_real *completed, int *status);
+    const delta_real *V, const delta_real *A, const delta_real *wrench, delta_real *completed, int
+    *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 639 mul, 411 add, 12 div, 6
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -200,6 +210,15 @@ int delta_forward_kinematics(const delta_model *model, const delta_real *q_actua
     delta_real *X0, delta_real *X);
 size_t delta_forward_kinematics_batch(const delta_model *model, size_t n, const delta_real
     *q_actuated, const delta_real *X0, delta_real *X, int *status);
+
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 262 mul, 147 add, 9 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (3). */
+int delta_condition(const delta_model *model, const delta_real *X, delta_real *sigma, delta_real
+    *legs);
+size_t delta_condition_batch(const delta_model *model, size_t n, const delta_real *X, delta_real
+    *sigma, delta_real *legs, int *status);
 
 #ifdef __cplusplus
 }

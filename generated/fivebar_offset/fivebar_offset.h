@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask fivebar_offset_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so fivebar_offset.c refuses them unless FIVEBAR_OFFSET_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as FIVEBAR_OFFSET_OK.
  */
 #ifndef FIVEBAR_OFFSET_H_INCLUDED
 #define FIVEBAR_OFFSET_H_INCLUDED
@@ -101,33 +107,37 @@ typedef struct {
 
 /* What depends on the parameters alone; set by fivebar_offset_prepare, then only read. */
 typedef struct {
-    fivebar_offset_real J_star_t_8, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x,
-            h_star_y, m_star;
+    fivebar_offset_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, legs_size, m_star;
     /* legs of type rr */
     fivebar_offset_real J_1_rr_zz[1], d_G_rr_yy[1], g_r0_x[1], g_r0_y[1], h_1_rr_x[1], h_1_rr_y[1],
-            inv_rr_platform_joint_offset_x[1], n_c_rr_t[1], n_c_rr_x[1], potential_t[1],
-            potential_t_2[1], root_1_rr_t[1], rr_base_frame_xx[1], rr_base_frame_xy[1],
-            rr_base_frame_yx[1], rr_base_frame_yy[1], rr_base_point_x[1], rr_base_point_y[1],
-            rr_platform_joint_offset_x[1], rr_platform_point_x[1], rr_platform_point_y[1];
+            inv_root_1_rr_t_2[1], inv_rr_platform_joint_offset_x[1], n_c_rr_t[1], n_c_rr_x[1],
+            potential_t[1], potential_t_2[1], root_1_rr_t[1], rr_base_frame_xx[1],
+            rr_base_frame_xy[1], rr_base_frame_yx[1], rr_base_frame_yy[1], rr_base_point_x[1],
+            rr_base_point_y[1], rr_platform_joint_offset_x[1], rr_platform_point_x[1],
+            rr_platform_point_y[1];
     /* legs of type rrr */
     fivebar_offset_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1],
             Kd_1_rrr_t_3[1], b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1],
             d_Gamma_1_rrr_y[1], d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x_2[1], g_r0_y_2[1],
             h_1_rrr_x[1], h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1],
-            inv_rrr_platform_joint_offset_x[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
-            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
-            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
-            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
-            rrr_platform_point_y[1], size_rrr[1];
+            inv_rho2_1_rrr_t_4[1], inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1],
+            inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
+            rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
+            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
+            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
+            size_rrr[1];
 } fivebar_offset_model;
 
 extern const fivebar_offset_params fivebar_offset_default_params;
 extern const fivebar_offset_real fivebar_offset_HOME_X[FIVEBAR_OFFSET_NQ];
 extern const fivebar_offset_real fivebar_offset_HOME_Q[FIVEBAR_OFFSET_NJ];
 
-/* Prepare a model.  FIVEBAR_OFFSET_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  FIVEBAR_OFFSET_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_offset_prepare(const fivebar_offset_params *params, fivebar_offset_model *model);
 
 /* Inertia matrix M. 106 mul, 80 add, 3 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -224,14 +234,14 @@ size_t fivebar_offset_forward_dynamics_batch(const fivebar_offset_model *model, 
     fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *tau, const
     fivebar_offset_real *wrench, fivebar_offset_real *A, fivebar_offset_real *lambda, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int fivebar_offset_complete_acceleration(const fivebar_offset_model *model, const
-    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    fivebar_offset_real *completed);
+    fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A, const
+    fivebar_offset_real *wrench, fivebar_offset_real *completed);
 size_t fivebar_offset_complete_acceleration_batch(const fivebar_offset_model *model, size_t n,
     const fivebar_offset_real *X, const fivebar_offset_real *V, const fivebar_offset_real *A,
-    fivebar_offset_real *completed, int *status);
+    const fivebar_offset_real *wrench, fivebar_offset_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 143 mul, 80 add, 3 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -259,6 +269,23 @@ size_t fivebar_offset_forward_kinematics_batch(const fivebar_offset_model *model
     fivebar_offset_real *q_actuated, const fivebar_offset_real *X0, fivebar_offset_real *X, int
     *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (2), legs (2). */
+int fivebar_offset_condition(const fivebar_offset_model *model, const fivebar_offset_real *X,
+    fivebar_offset_real *sigma, fivebar_offset_real *legs);
+size_t fivebar_offset_condition_batch(const fivebar_offset_model *model, size_t n, const
+    fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int *status);
+
+/* The same of [H Hk], which inverse dynamics solves. 83 mul, 46 add, 3 div, 5 sqrt, 0 trig; the
+   singular values apart. In: X (NQ). Out: sigma (3), legs (2). */
+int fivebar_offset_condition_constrained(const fivebar_offset_model *model, const
+    fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs);
+size_t fivebar_offset_condition_constrained_batch(const fivebar_offset_model *model, size_t n,
+    const fivebar_offset_real *X, fivebar_offset_real *sigma, fivebar_offset_real *legs, int
+    *status);
+
 /* The nearest pose on which the constraints hold. In: X (NQ). Out: projected (NQ). */
 int fivebar_offset_project(const fivebar_offset_model *model, const fivebar_offset_real *X,
     fivebar_offset_real *projected);
@@ -270,7 +297,8 @@ int fivebar_offset_rotation(const fivebar_offset_real *X, fivebar_offset_real *R
 size_t fivebar_offset_rotation_batch(size_t n, const fivebar_offset_real *X, fivebar_offset_real
     *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
 int fivebar_offset_pose(const fivebar_offset_real *t, const fivebar_offset_real *R,
     fivebar_offset_real *X);
 size_t fivebar_offset_pose_batch(size_t n, const fivebar_offset_real *t, const fivebar_offset_real

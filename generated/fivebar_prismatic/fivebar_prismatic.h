@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask fivebar_prismatic_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so fivebar_prismatic.c refuses them unless FIVEBAR_PRISMATIC_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as FIVEBAR_PRISMATIC_OK.
  */
 #ifndef FIVEBAR_PRISMATIC_H_INCLUDED
 #define FIVEBAR_PRISMATIC_H_INCLUDED
@@ -83,23 +89,25 @@ typedef struct {
 
 /* What depends on the parameters alone; set by fivebar_prismatic_prepare, then only read. */
 typedef struct {
-    fivebar_prismatic_real Z_p_x, Z_p_y, gravity_x, gravity_y, h_star_x, h_star_y, m_star;
+    fivebar_prismatic_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
+            legs_size, m_star, spread_t;
     /* legs of type rpr */
     fivebar_prismatic_real J_group_1_zz[2], Sigma_1_xx[2], Sigma_1_yy[2], b_r0_x[2], b_r0_y[2],
             branch_1[2], g_r0_x[2], g_r0_y[2], h_1_x[2], h_1_y[2], h_2_x[2], h_2_y[2], h_group_1_x[2],
             h_group_1_y[2], rpr_base_frame_xx[2], rpr_base_frame_xy[2], rpr_base_frame_yx[2],
             rpr_base_frame_yy[2], rpr_base_point_x[2], rpr_base_point_y[2], rpr_link1_mass[2],
-            rpr_link2_mass[2], rpr_platform_point_x[2], rpr_platform_point_y[2], size_[2],
-            size_t_3[2];
+            rpr_link2_mass[2], rpr_platform_point_x[2], rpr_platform_point_y[2];
 } fivebar_prismatic_model;
 
 extern const fivebar_prismatic_params fivebar_prismatic_default_params;
 extern const fivebar_prismatic_real fivebar_prismatic_HOME_X[FIVEBAR_PRISMATIC_NQ];
 extern const fivebar_prismatic_real fivebar_prismatic_HOME_Q[FIVEBAR_PRISMATIC_NJ];
 
-/* Prepare a model.  FIVEBAR_PRISMATIC_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  FIVEBAR_PRISMATIC_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_prismatic_prepare(const fivebar_prismatic_params *params, fivebar_prismatic_model *model);
 
 /* Inertia matrix M. 48 mul, 32 add, 2 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -176,14 +184,15 @@ size_t fivebar_prismatic_forward_dynamics_batch(const fivebar_prismatic_model *m
     const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real
     *tau, const fivebar_prismatic_real *wrench, fivebar_prismatic_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int fivebar_prismatic_complete_acceleration(const fivebar_prismatic_model *model, const
     fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const fivebar_prismatic_real *A,
-    fivebar_prismatic_real *completed);
+    const fivebar_prismatic_real *wrench, fivebar_prismatic_real *completed);
 size_t fivebar_prismatic_complete_acceleration_batch(const fivebar_prismatic_model *model, size_t
     n, const fivebar_prismatic_real *X, const fivebar_prismatic_real *V, const
-    fivebar_prismatic_real *A, fivebar_prismatic_real *completed, int *status);
+    fivebar_prismatic_real *A, const fivebar_prismatic_real *wrench, fivebar_prismatic_real
+    *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 88 mul, 54 add, 2 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -212,6 +221,16 @@ int fivebar_prismatic_forward_kinematics(const fivebar_prismatic_model *model, c
 size_t fivebar_prismatic_forward_kinematics_batch(const fivebar_prismatic_model *model, size_t n,
     const fivebar_prismatic_real *q_actuated, const fivebar_prismatic_real *X0,
     fivebar_prismatic_real *X, int *status);
+
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 27 mul, 24 add, 2 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (2), legs (2). */
+int fivebar_prismatic_condition(const fivebar_prismatic_model *model, const fivebar_prismatic_real
+    *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs);
+size_t fivebar_prismatic_condition_batch(const fivebar_prismatic_model *model, size_t n, const
+    fivebar_prismatic_real *X, fivebar_prismatic_real *sigma, fivebar_prismatic_real *legs, int
+    *status);
 
 #ifdef __cplusplus
 }

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask fivebar_redundant_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so fivebar_redundant.c refuses them unless FIVEBAR_REDUNDANT_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as FIVEBAR_REDUNDANT_OK.
  */
 #ifndef FIVEBAR_REDUNDANT_H_INCLUDED
 #define FIVEBAR_REDUNDANT_H_INCLUDED
@@ -109,13 +115,14 @@ typedef struct {
 
 /* What depends on the parameters alone; set by fivebar_redundant_prepare, then only read. */
 typedef struct {
-    fivebar_redundant_real Z_p_x, Z_p_y, gravity_x, gravity_y, h_star_x, h_star_y, m_star;
+    fivebar_redundant_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
+            legs_size, m_star;
     /* legs of type rrr */
     fivebar_redundant_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1],
             Kd_1_rrr_t_3[1], b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1],
             d_Gamma_1_rrr_y[1], d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1],
-            h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1],
-            inv_rrr_platform_joint_offset_x[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
+            h_1_rrr_y[1], h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rho2_1_rrr_t_4[1],
+            inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
             rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
             rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
             rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
@@ -125,9 +132,9 @@ typedef struct {
             Kd_1_rrr2_t_3[1], b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], d_Gamma_1_rrr2_t[1],
             d_Gamma_1_rrr2_y[1], d_c_rrr2_yy[1], d_phi_2_rrr2_t[1], g_r0_x_2[1], g_r0_y_2[1],
             h_1_rrr2_x[1], h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
-            inv_rrr2_platform_joint_offset_x[1], inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1],
-            rrr2_base_frame_xx[1], rrr2_base_frame_xy[1], rrr2_base_frame_yx[1],
-            rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
+            inv_rho2_1_rrr2_t_4[1], inv_rrr2_platform_joint_offset_x[1], inv_size_rrr2[1],
+            inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1], rrr2_base_frame_xx[1], rrr2_base_frame_xy[1],
+            rrr2_base_frame_yx[1], rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
             rrr2_joint2_offset_x[1], rrr2_link1_mass[1], rrr2_link2_mass[1],
             rrr2_platform_joint_offset_x[1], rrr2_platform_point_x[1], rrr2_platform_point_y[1],
             size_rrr2[1];
@@ -137,9 +144,11 @@ extern const fivebar_redundant_params fivebar_redundant_default_params;
 extern const fivebar_redundant_real fivebar_redundant_HOME_X[FIVEBAR_REDUNDANT_NQ];
 extern const fivebar_redundant_real fivebar_redundant_HOME_Q[FIVEBAR_REDUNDANT_NJ];
 
-/* Prepare a model.  FIVEBAR_REDUNDANT_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  FIVEBAR_REDUNDANT_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_redundant_prepare(const fivebar_redundant_params *params, fivebar_redundant_model *model);
 
 /* Inertia matrix M. 124 mul, 83 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -234,14 +243,15 @@ int fivebar_redundant_null_space(const fivebar_redundant_model *model, const
 size_t fivebar_redundant_null_space_batch(const fivebar_redundant_model *model, size_t n, const
     fivebar_redundant_real *X, fivebar_redundant_real *basis, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int fivebar_redundant_complete_acceleration(const fivebar_redundant_model *model, const
     fivebar_redundant_real *X, const fivebar_redundant_real *V, const fivebar_redundant_real *A,
-    fivebar_redundant_real *completed);
+    const fivebar_redundant_real *wrench, fivebar_redundant_real *completed);
 size_t fivebar_redundant_complete_acceleration_batch(const fivebar_redundant_model *model, size_t
     n, const fivebar_redundant_real *X, const fivebar_redundant_real *V, const
-    fivebar_redundant_real *A, fivebar_redundant_real *completed, int *status);
+    fivebar_redundant_real *A, const fivebar_redundant_real *wrench, fivebar_redundant_real
+    *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 188 mul, 106 add, 4 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -270,6 +280,16 @@ int fivebar_redundant_forward_kinematics(const fivebar_redundant_model *model, c
 size_t fivebar_redundant_forward_kinematics_batch(const fivebar_redundant_model *model, size_t n,
     const fivebar_redundant_real *q_actuated, const fivebar_redundant_real *X0,
     fivebar_redundant_real *X, int *status);
+
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 100 mul, 54 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (2), legs (2). */
+int fivebar_redundant_condition(const fivebar_redundant_model *model, const fivebar_redundant_real
+    *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs);
+size_t fivebar_redundant_condition_batch(const fivebar_redundant_model *model, size_t n, const
+    fivebar_redundant_real *X, fivebar_redundant_real *sigma, fivebar_redundant_real *legs, int
+    *status);
 
 #ifdef __cplusplus
 }

@@ -13,7 +13,13 @@ tau:    leg 1 joint 1, leg 1 joint 2, leg 2 joint 1
 wrench: fx, fy
 
 Impossible states (unreachable, singular, not finite) give NaN, in their rows only.
+Arguments are made of real numbers: TypeError for complex ones, truth values, text and masked
+arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows what is required, by
+position or keyword; all else is given by keyword.
 """
+
+import warnings
+from numbers import Real
 
 import numpy as np
 
@@ -31,6 +37,7 @@ __all__ = [
     "Parameters",
     "Z",
     "complete_acceleration",
+    "condition",
     "dynamics",
     "energy",
     "forward_dynamics",
@@ -49,15 +56,10 @@ NU = 3
 NC = 0
 NW = 2
 NJ = 4
-HOME_X = np.array([0.02, 0.55])
-HOME_Q = np.array([2.1707963267948966, -1.1, 0.9707963267948966, 1.1])
-HOME_X.setflags(write=False)
-HOME_Q.setflags(write=False)
 
-# Lengths below this fraction of a leg's size, and pivots below it, count as zero.
+# Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_PER_LEG = ("rrr_", "rrr2_", )
 _LEGS = {  # positions of the legs of each type
     "rrr": (0,),
     "rrr2": (1,),
@@ -139,38 +141,42 @@ _DEFAULTS = {
         [[0.0002, 0.0, 0.0], [0.0, 0.016975, 0.0], [0.0, 0.0, 0.016975]],
     ],
 }
-_RULES = {  # shape, entries that are zero by structure, what the values must be
-    "gravity": ((3,), (2,), ""),
-    "platform_mass": ((), (), "mass"),
-    "platform_centre_of_mass": ((3,), (2,), ""),
-    "platform_inertia": ((3, 3), (), "inertia"),
-    "rrr_base_point": ((1, 3), (2,), ""),
-    "rrr_base_frame": ((1, 3, 3), (), "rotation"),
-    "rrr_platform_point": ((1, 3), (2,), ""),
-    "rrr_joint2_offset": ((1, 3), (1, 2), ""),
-    "rrr_platform_joint_offset": ((1, 3), (1, 2), ""),
-    "rrr_link1_mass": ((1,), (), "mass"),
-    "rrr_link1_centre_of_mass": ((1, 3), (2,), ""),
-    "rrr_link1_inertia": ((1, 3, 3), (), "inertia"),
-    "rrr_link2_mass": ((1,), (), "mass"),
-    "rrr_link2_centre_of_mass": ((1, 3), (2,), ""),
-    "rrr_link2_inertia": ((1, 3, 3), (), "inertia"),
-    "rrr2_base_point": ((1, 3), (2,), ""),
-    "rrr2_base_frame": ((1, 3, 3), (), "rotation"),
-    "rrr2_platform_point": ((1, 3), (2,), ""),
-    "rrr2_joint2_offset": ((1, 3), (1, 2), ""),
-    "rrr2_platform_joint_offset": ((1, 3), (1, 2), ""),
-    "rrr2_link1_mass": ((1,), (), "mass"),
-    "rrr2_link1_centre_of_mass": ((1, 3), (2,), ""),
-    "rrr2_link1_inertia": ((1, 3, 3), (), "inertia"),
-    "rrr2_link2_mass": ((1,), (), "mass"),
-    "rrr2_link2_centre_of_mass": ((1, 3), (2,), ""),
-    "rrr2_link2_inertia": ((1, 3, 3), (), "inertia"),
+_RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
+    "gravity": ((3,), (3,), (2,), "free"),
+    "platform_mass": ((), (), (), "mass"),
+    "platform_centre_of_mass": ((3,), (3,), (2,), "free"),
+    "platform_inertia": ((3, 3), (3, 3), (), "planar_inertia"),
+    "rrr_base_point": ((1, 3), (3,), (2,), "free"),
+    "rrr_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
+    "rrr_platform_point": ((1, 3), (3,), (2,), "free"),
+    "rrr_joint2_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrr_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrr_link1_mass": ((1,), (), (), "mass"),
+    "rrr_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "rrr_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "rrr_link2_mass": ((1,), (), (), "mass"),
+    "rrr_link2_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "rrr_link2_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "rrr2_base_point": ((1, 3), (3,), (2,), "free"),
+    "rrr2_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
+    "rrr2_platform_point": ((1, 3), (3,), (2,), "free"),
+    "rrr2_joint2_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrr2_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrr2_link1_mass": ((1,), (), (), "mass"),
+    "rrr2_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "rrr2_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "rrr2_link2_mass": ((1,), (), (), "mass"),
+    "rrr2_link2_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "rrr2_link2_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
 }
 
 
 class Parameters:
     """Parameters of the model: frozen, with read-only copies of arrays.
+
+    Values obey the rules of a specification: masses are not negative, inertia tensors symmetric
+    and without negative principal moments, frames rotations, axes of length 1, and what the
+    structure fixes at zero is zero.  Copies and what is unpickled are made anew from the values.
 
     Attributes:
         gravity: acceleration of gravity, base frame [m/s^2], shape (3,).
@@ -202,14 +208,12 @@ class Parameters:
     """
 
     def __init__(self, **values):
-        """Defaults, with the given values in their place; ValueError if one is impossible."""
-        unknown = sorted(set(values) - set(_DEFAULTS))
-        if unknown:
-            raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
-        for name, rule in _RULES.items():
-            value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_cache", {})
+        """Defaults, with the given values in their place; ValueError if one is impossible.
+
+        TypeError for what is not made of real numbers.  A warning tells of an inertia that no
+        body has, by its principal moments.
+        """
+        _fill(self, values, values)
 
     def __setattr__(self, name, value):
         raise AttributeError("Parameters are frozen; use replace()")
@@ -219,7 +223,10 @@ class Parameters:
 
     def replace(self, **changes):
         """A copy with some values changed."""
-        return Parameters(**{**{name: getattr(self, name) for name in _RULES}, **changes})
+        return _fill(object.__new__(Parameters), {**self._values(), **changes}, changes)
+
+    def __reduce__(self):
+        return _remade, (self._values(),)
 
     def __eq__(self, other):
         if not isinstance(other, Parameters):
@@ -233,6 +240,10 @@ class Parameters:
         changed = [n for n in _RULES if not np.array_equal(getattr(self, n), _DEFAULTS[n])]
         return f"Parameters({', '.join(f'{n}={getattr(self, n)!r}' for n in changed)})"
 
+    def _values(self):
+        """All values by name."""
+        return {name: getattr(self, name) for name in _RULES}
+
     def _prepared(self):
         """Values that depend on the parameters alone, computed once."""
         if "model" not in self._cache:
@@ -240,48 +251,156 @@ class Parameters:
         return self._cache["model"]
 
 
-def _checked(name, value, shape, zeros, rule):
-    """A parameter as a read-only array (or float), or ValueError."""
-    value = np.array(value, dtype=float)
+def _fill(p, values, fresh):
+    """The parameters with these values, checked; fresh ones are warned of, where there is need."""
+    unknown = sorted(set(values) - set(_DEFAULTS))
+    if unknown:
+        raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
+    for name, rule in _RULES.items():
+        value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
+        object.__setattr__(p, name, value)
+        if rule[-1] == "inertia" and name in fresh:
+            _warn(name, value, 4)
+    object.__setattr__(p, "_cache", {})
+    return p
+
+
+def _remade(values):
+    """Parameters from the values of others: a copy, or what was pickled."""
+    return _fill(object.__new__(Parameters), values, ())
+
+
+_REAL = np.dtype(float)
+_KINDS = {"b": "truth values", "c": "complex numbers", "S": "text", "U": "text"}
+
+
+def _numbers(function, name, value):
+    """An argument as an array of floats; TypeError unless it is made of real numbers alone."""
+    try:
+        kind = _unfit(value)
+        if not kind:
+            return np.asarray(value, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{function}: {name} is no array of numbers: {error}") from None
+    raise TypeError(f"{function}: {name}: expected real numbers, got {kind}")
+
+
+def _unfit(value):
+    """What, other than real numbers, a value is made of; or an empty text."""
+    if isinstance(value, (list, tuple)):
+        if set(map(type, value)) <= {float, int, np.float64}:
+            return ""
+        return next(filter(None, map(_unfit, value)), "")
+    if isinstance(value, np.ma.MaskedArray):
+        return "a masked array"
+    if value is None:
+        return "None"
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        odd = (v for v in array.flat if not isinstance(v, Real) or isinstance(v, bool))
+        return next((type(v).__name__ for v in odd), "")
+    return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
+
+
+def _vector(function, name, value, size):
+    """An argument as an array of floats (..., size), or an error that names it."""
+    if type(value) is not np.ndarray or value.dtype is not _REAL:
+        value = _numbers(function, name, value)
+    if value.ndim == 0 or value.shape[-1] != size:
+        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
+    return value
+
+
+def _lead(**arguments):
+    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
+    leads = [v.shape[:-1] for v in arguments.values()]
+    if not any(leads):
+        return ()
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
+
+
+def _given(p):
+    """The parameters, by default the model's own; TypeError for anything else."""
+    if isinstance(p, Parameters):
+        return p
+    if p is None:
+        return _DEFAULT
+    kind = type(p).__name__
+    if kind == "Parameters":
+        kind = f"Parameters of {type(p).__module__} (another module, or this one imported anew)"
+    raise TypeError(f"p: expected Parameters, got {kind}; a wrench is given as wrench=")
+
+
+def _frozen(value):
+    """A copy that cannot be made writable again: its memory is a bytes object."""
+    return np.frombuffer(value.tobytes(), dtype=float).reshape(value.shape)
+
+
+def _checked(name, value, shape, core, zeros, rule):
+    """A parameter as a read-only array (or float); ValueError or TypeError if it is impossible."""
+    value = _numbers("Parameters", name, value) + 0.0  # a copy, without the sign of zero
     if value.shape != shape:
         raise ValueError(f"Parameters: {name} has shape {value.shape}, expected {shape}")
     if not np.all(np.isfinite(value)):
         raise ValueError(f"Parameters: {name} has entries that are not finite")
-    flat = value.reshape(-1, value[0].size if zeros and value.ndim > len(_core(name)) else value.size)
-    if any(np.any(np.abs(flat[:, k]) > 1e-9) for k in zeros):
+    if np.any(np.abs(value) > 1e+12):
+        raise ValueError(f"Parameters: {name} has entries beyond 1e+12 in size")
+    value = np.array(value)
+    each = value.reshape(-1, *core)
+    flat = value.reshape(len(each), -1)
+    if any(np.any(np.abs(flat[:, k]) > 1e-09) for k in zeros):
         raise ValueError(f"Parameters: {name} must be zero in entries {zeros}: the structure is fixed")
-    for k in zeros:
-        flat[:, k] = 0.0
-    message = _violates(value, rule)
+    flat[:, list(zeros)] = 0.0
+    message = _violates(each, rule)
     if message:
         raise ValueError(f"Parameters: {name} {message}")
-    value.setflags(write=False)
-    return value if shape else float(value)
-
-
-def _core(name):
-    """Shape of one leg's entry, or of the whole."""
-    shape = _RULES[name][0]
-    return shape[1:] if name.startswith(_PER_LEG) else shape
+    return _frozen(value) if shape else float(value)
 
 
 def _violates(value, rule):
-    """What is wrong with a parameter, or an empty text."""
+    """What is wrong with the values of a parameter, one after another; or an empty text."""
     if rule == "mass" and np.any(value < 0.0):
         return "must not be negative"
-    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-6):
+    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-06):
         return "must be of length 1"
-    if rule == "inertia" and np.any(np.abs(value - np.swapaxes(value, -1, -2)) > 1e-9 * (
-        1e-300 + np.max(np.abs(value)))):
-        return "must be symmetric"
-    if rule == "rotation":
-        error = np.abs(value @ np.swapaxes(value, -1, -2) - np.eye(3))
-        if np.any(error > 1e-6) or np.any(np.linalg.det(value) < 0.0):
-            return "must be rotation matrices"
-        if np.any(np.abs(value[..., 2, 2] - 1.0) > 1e-6):
-            return "must turn about the normal of the plane"
+    if rule == "planar_inertia" and np.any(value[:, 2, 2] < 0.0):
+        return "must have an izz that is not negative"
+    if rule == "inertia":
+        rounding = 1e-09 * np.max(np.abs(value), axis=(1, 2))
+        if np.any(np.max(np.abs(value - np.swapaxes(value, 1, 2)), axis=(1, 2)) > rounding):
+            return "must be symmetric to 1e-09 of its largest entry"
+        if np.any(np.linalg.eigvalsh(value)[:, 0] < -rounding):
+            return "must have no negative principal moments, to 1e-09 of its largest entry"
+    if rule in ("rotation", "planar_rotation") and not np.all(_are_rotations(value)):
+        return "must be rotation matrices: orthonormal to 1e-06, determinant +1"
+    if rule == "planar_rotation" and np.any(np.abs(value[:, 2, 2] - 1.0) > 1e-09):
+        return "must turn about the normal of the plane"
     return ""
 
+
+def _are_rotations(R):
+    """Which matrices (..., n, n) have orthonormal rows, to 1e-06, and a positive determinant."""
+    with np.errstate(all="ignore"):
+        error = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1]))
+        return np.all(error <= 1e-06, axis=(-1, -2)) & (np.linalg.det(R) > 0.0)
+
+
+def _warn(name, value, level):
+    """Tell of principal moments that no body has: the largest exceeds the sum of the others."""
+    for tensor in value.reshape(-1, 3, 3):
+        small, middle, large = np.linalg.eigvalsh(tensor)
+        if large > small + middle + 1e-09 * np.max(np.abs(tensor)):
+            warnings.warn(
+                f"Parameters: {name}: principal moments {small:.6g}, {middle:.6g}, {large:.6g} kg m^2"
+                " belong to no body: the largest exceeds the sum of the others", stacklevel=level)
+
+
+HOME_X = _frozen(np.array([0.02, 0.55]))
+HOME_Q = _frozen(np.array([2.1707963267948966, -1.1, 0.9707963267948966, 1.1]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
     "branch_1_rrr": np.array([1.0]),
@@ -346,35 +465,31 @@ def _prepare(p):
     Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
     Kd_1_rrr_t_2 = 0.5*Kd_1_rrr_t
     Kd_1_rrr_t_3 = 0.5*uu_2_rrr_t
-    # (rrr-G1) size of the leg, the measure of what is near singular
-    size_rrr_t = rrr_base_point_x*rrr_base_point_x + rrr_base_point_y*rrr_base_point_y
-    size_rrr_t_2 = (
-    rrr_platform_point_x*rrr_platform_point_x + rrr_platform_point_y*rrr_platform_point_y
-    )
-    size_rrr_t_3 = Kd_1_rrr_t + size_rrr_t + size_rrr_t_2 + uu_2_rrr_t
-    size_rrr = sqrt(size_rrr_t_3)
+    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
+    size_rrr_t = 5.257946636889999e-07 + Kd_1_rrr_t + uu_2_rrr_t
+    size_rrr = sqrt(size_rrr_t)
     # (rrr-K8) squared amplitude
-    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t_3
+    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t
     # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
     inv_Kd_1_rrr_t_5 = 1.0/Kd_1_rrr_t
     # (rrr-K18) cosine of the angle of joint 2 from its reference direction
     inv_uu_2_rrr_t = 1.0/uu_2_rrr_t
-    # (rrr-G3) inertia tensor of link 1 about the origin of link 1
+    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
     J_1_rrr_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
     J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass
-    # (rrr-G4) connection point to the centre of mass of link 2
+    # (rrr-G5) connection point to the centre of mass of link 2
     rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G6) inertia tensor of link 2 about the connection point
+    # (rrr-G7) inertia tensor of link 2 about the connection point
     J_2_rrr_t = (
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
     # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
     Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
-    # (rrr-G5) first moment of link 2 about the connection point
+    # (rrr-G6) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
     # (rrr-V6) reciprocal vector 2
@@ -391,7 +506,7 @@ def _prepare(p):
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
     g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G2) first moment of link 1 about the origin of link 1
+    # (rrr-G3) first moment of link 1 about the origin of link 1
     h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
     h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
     # (L2) first moment about the platform origin
@@ -400,44 +515,47 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-K8) squared amplitude
+    inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
+    # (rrr-V5) reciprocal vector 1
+    inv_size_rrr = 1.0/size_rrr
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
     total_rrr_x = np.sum(np.broadcast_to(h_star_t_3, _rrr))
     total_rrr_y = np.sum(np.broadcast_to(h_star_t_4, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (rrr2-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr2_t = rrr2_platform_joint_offset_x*rrr2_platform_joint_offset_x
     # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr2_t = rrr2_joint2_offset_x*rrr2_joint2_offset_x
     Kd_1_rrr2_t_2 = 0.5*Kd_1_rrr2_t
     Kd_1_rrr2_t_3 = 0.5*uu_2_rrr2_t
-    # (rrr2-G1) size of the leg, the measure of what is near singular
-    size_rrr2_t = rrr2_base_point_x*rrr2_base_point_x + rrr2_base_point_y*rrr2_base_point_y
-    size_rrr2_t_2 = (
-    rrr2_platform_point_x*rrr2_platform_point_x + rrr2_platform_point_y*rrr2_platform_point_y
-    )
-    size_rrr2_t_3 = Kd_1_rrr2_t + size_rrr2_t + size_rrr2_t_2 + uu_2_rrr2_t
-    size_rrr2 = sqrt(size_rrr2_t_3)
+    # (rrr2-G2) length of the leg's lever arms, the measure of what is near singular
+    size_rrr2_t = 5.257946636889999e-07 + Kd_1_rrr2_t + uu_2_rrr2_t
+    size_rrr2 = sqrt(size_rrr2_t)
     # (rrr2-K8) squared amplitude
-    rho2_1_rrr2_t = size_rrr2*size_rrr2*size_rrr2_t_3
+    rho2_1_rrr2_t = size_rrr2*size_rrr2*size_rrr2_t
     # (rrr2-K15) the vector from joint 1 to the connection point, resolved along link 1
     inv_Kd_1_rrr2_t_5 = 1.0/Kd_1_rrr2_t
     # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
     inv_uu_2_rrr2_t = 1.0/uu_2_rrr2_t
-    # (rrr2-G3) inertia tensor of link 1 about the origin of link 1
+    # (rrr2-G4) inertia tensor of link 1 about the origin of link 1
     J_1_rrr2_t = (
     rrr2_link1_centre_of_mass_x*rrr2_link1_centre_of_mass_x +
         rrr2_link1_centre_of_mass_y*rrr2_link1_centre_of_mass_y
     )
     J_1_rrr2_zz = rrr2_link1_inertia_zz + J_1_rrr2_t*rrr2_link1_mass
-    # (rrr2-G4) connection point to the centre of mass of link 2
+    # (rrr2-G5) connection point to the centre of mass of link 2
     rho_tip_2_rrr2_x = rrr2_link2_centre_of_mass_x - rrr2_platform_joint_offset_x
-    # (rrr2-G6) inertia tensor of link 2 about the connection point
+    # (rrr2-G7) inertia tensor of link 2 about the connection point
     J_2_rrr2_t = (
     rho_tip_2_rrr2_x*rho_tip_2_rrr2_x + rrr2_link2_centre_of_mass_y*rrr2_link2_centre_of_mass_y
     )
     J_2_rrr2_zz = rrr2_link2_inertia_zz + J_2_rrr2_t*rrr2_link2_mass
     # (rrr2-N11) inertia tensor of the links from 1 outwards about joint 1
     Jc_1_rrr2_zz = J_1_rrr2_zz + J_2_rrr2_zz
-    # (rrr2-G5) first moment of link 2 about the connection point
+    # (rrr2-G6) first moment of link 2 about the connection point
     h_2_rrr2_x = rho_tip_2_rrr2_x*rrr2_link2_mass
     h_2_rrr2_y = rrr2_link2_centre_of_mass_y*rrr2_link2_mass
     # (rrr2-V6) reciprocal vector 2
@@ -455,7 +573,7 @@ def _prepare(p):
     # (rrr2-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x_2 = gravity_x*rrr2_base_frame_xx + gravity_y*rrr2_base_frame_yx
     g_r0_y_2 = gravity_x*rrr2_base_frame_xy + gravity_y*rrr2_base_frame_yy
-    # (rrr2-G2) first moment of link 1 about the origin of link 1
+    # (rrr2-G3) first moment of link 1 about the origin of link 1
     h_1_rrr2_x = rrr2_link1_centre_of_mass_x*rrr2_link1_mass
     h_1_rrr2_y = rrr2_link1_centre_of_mass_y*rrr2_link1_mass
     # (L2) first moment about the platform origin
@@ -464,9 +582,16 @@ def _prepare(p):
     # (V1) potential energy
     b_rrr2_r0_x = rrr2_base_frame_xx*rrr2_base_point_x + rrr2_base_frame_yx*rrr2_base_point_y
     b_rrr2_r0_y = rrr2_base_frame_xy*rrr2_base_point_x + rrr2_base_frame_yy*rrr2_base_point_y
+    # (rrr2-K8) squared amplitude
+    inv_rho2_1_rrr2_t_4 = 1.0/rho2_1_rrr2_t
+    # (rrr2-V5) reciprocal vector 1
+    inv_size_rrr2 = 1.0/size_rrr2
     total_rrr2 = np.sum(np.broadcast_to(rrr2_link2_mass, _rrr2))
     total_rrr2_x = np.sum(np.broadcast_to(h_star_t_5, _rrr2))
     total_rrr2_y = np.sum(np.broadcast_to(h_star_t_6, _rrr2))
+    total_rrr2_x_2 = np.sum(np.broadcast_to(rrr2_platform_point_x, _rrr2))
+    total_rrr2_y_2 = np.sum(np.broadcast_to(rrr2_platform_point_y, _rrr2))
+    total_rrr2_2 = np.sum(np.broadcast_to(size_rrr2_t, _rrr2))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrr + total_rrr2
     # (M2) centripetal force and weight of the platform
@@ -475,13 +600,21 @@ def _prepare(p):
     # (L2) first moment about the platform origin
     h_star_x = h_star_t + total_rrr2_x + total_rrr_x
     h_star_y = h_star_t_2 + total_rrr2_y + total_rrr_y
+    # (C1) centroid of the platform points
+    b_c_x = 0.5*total_rrr2_x_2 + 0.5*total_rrr_x_2
+    b_c_y = 0.5*total_rrr2_y_2 + 0.5*total_rrr_y_2
+    # (C3) rms size of the legs, taken where the platform points coincide
+    legs_size = sqrt(0.5*total_rrr2_2 + 0.5*total_rrr_2)
     shared = {
         "Z_p_x": float(Z_p_x),
         "Z_p_y": float(Z_p_y),
+        "b_c_x": float(b_c_x),
+        "b_c_y": float(b_c_y),
         "gravity_x": float(gravity_x),
         "gravity_y": float(gravity_y),
         "h_star_x": float(h_star_x),
         "h_star_y": float(h_star_y),
+        "legs_size": float(legs_size),
         "m_star": float(m_star),
     }
     legs = {
@@ -505,7 +638,9 @@ def _prepare(p):
             "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
             "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
             "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
+            "inv_rho2_1_rrr_t_4": np.broadcast_to(inv_rho2_1_rrr_t_4, _rrr),
             "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_size_rrr": np.broadcast_to(inv_size_rrr, _rrr),
             "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
             "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
             "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
@@ -542,7 +677,9 @@ def _prepare(p):
             "h_2_rrr2_x": np.broadcast_to(h_2_rrr2_x, _rrr2),
             "h_2_rrr2_y": np.broadcast_to(h_2_rrr2_y, _rrr2),
             "inv_Kd_1_rrr2_t_5": np.broadcast_to(inv_Kd_1_rrr2_t_5, _rrr2),
+            "inv_rho2_1_rrr2_t_4": np.broadcast_to(inv_rho2_1_rrr2_t_4, _rrr2),
             "inv_rrr2_platform_joint_offset_x": np.broadcast_to(inv_rrr2_platform_joint_offset_x, _rrr2),
+            "inv_size_rrr2": np.broadcast_to(inv_size_rrr2, _rrr2),
             "inv_uu_2_rrr2_t": np.broadcast_to(inv_uu_2_rrr2_t, _rrr2),
             "rho2_1_rrr2_t": np.broadcast_to(rho2_1_rrr2_t, _rrr2),
             "rrr2_base_frame_xx": np.broadcast_to(rrr2_base_frame_xx, _rrr2),
@@ -613,12 +750,13 @@ class _Floats:
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
+    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
 
 
 class _Arrays:
     """Functions on arrays over states: the way for batches."""
 
-    sqrt, sin, cos, atan2 = np.sqrt, np.sin, np.cos, np.arctan2
+    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
 
 _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
@@ -626,8 +764,8 @@ _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 def _evaluate(plan, p, **vectors):
     """Arrays of a plan at the vectors that it reads."""
-    p = _DEFAULT if p is None else p
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors.values()))
+    p = _given(p)
+    lead = _lead(**vectors)
     chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
     return _run(plan, p, *chosen)
 
@@ -2800,6 +2938,193 @@ def _potential_after(c, s, t, f):
     return (ok, (potential,),)
 
 
+# condition: 100 mul, 54 add, 4 div, 5 sqrt, 0 trig
+def _condition_before(c, X, f):
+    legs_size, = c
+    X_0 = X[0]
+    X_1 = X[1]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    ok = True
+    return (ok, (t_x, t_y,), (legs_size,),)
+
+
+def _condition_rrr(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y = c
+    (
+    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4,
+        inv_rrr_platform_joint_offset_x, inv_size_rrr, inv_uu_2_rrr_t, rho2_1_rrr_t,
+        rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx, rrr_base_frame_yy,
+        rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x, rrr_platform_joint_offset_x,
+        rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    ) = k
+    t_x, t_y = s
+    # (rrr-K1) from the base point to the connection point
+    S_rrr_x = rrr_platform_point_x + t_x - rrr_base_point_x
+    S_rrr_y = rrr_platform_point_y + t_y - rrr_base_point_y
+    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+    # (rrr-K3) component along the reference direction
+    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+    # (rrr-K6) factor of the cosine in the equation of joint 1
+    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+    # (rrr-K4) component across the reference direction
+    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+    # (rrr-K7) factor of the sine in the equation of joint 1
+    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+    # (rrr-K8) squared amplitude
+    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+    # (rrr-K9) discriminant
+    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+    # (rrr-K10) root, with the sign of the branch
+    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+    # (rrr-K16) from the origin of joint 2 to the connection point
+    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+    # (rrr-K19) sine of the angle of joint 2 from its reference direction
+    s_2_rrr = (
+    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+    )
+    # (rrr-V2) from joint 1 to the connection point, along the links
+    r_1_rrr_t = rrr_platform_joint_offset_x*s_2_rrr
+    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*r_1_rrr_t
+    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+    inv_rho2_1_rrr = 1.0/rho2_1_rrr
+    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+    # (rrr-K12) sine of the angle of joint 1 from its reference direction
+    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+    # (rrr-V5) reciprocal vector 1
+    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+    axis_y_rrr_axes2_in_base_x = (
+    axis_y_rrr_axes2_r1_x*rrr_base_frame_xx + axis_y_rrr_axes2_r1_y*rrr_base_frame_xy
+    )
+    axis_y_rrr_axes2_in_base_y = (
+    axis_y_rrr_axes2_r1_x*rrr_base_frame_yx + axis_y_rrr_axes2_r1_y*rrr_base_frame_yy
+    )
+    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+    # (rrr-V6) reciprocal vector 2
+    w_2_rrr_t = (
+    inv_r_1_rrr_r0_y*inv_rrr_platform_joint_offset_x*(c_2_rrr*r_1_rrr_x + r_1_rrr_t*s_2_rrr)
+    )
+    # (rrr-V5) reciprocal vector 1
+    w_1_rrr_t = axis_y_rrr_axes2_in_base_y*inv_r_1_rrr_r0_y
+    w_1_rrr_t_2 = axis_y_rrr_axes2_in_base_x*inv_r_1_rrr_r0_y
+    # (rrr-V6) reciprocal vector 2
+    w_2_rrr_in_base_x = (
+    axis_y_rrr_axes2_in_base_x*inv_rrr_platform_joint_offset_x +
+        axis_y_rrr_axes2_in_base_y*w_2_rrr_t
+    )
+    w_2_rrr_in_base_y = (
+    axis_y_rrr_axes2_in_base_y*inv_rrr_platform_joint_offset_x -
+        axis_y_rrr_axes2_in_base_x*w_2_rrr_t
+    )
+    # (C2) rms distance of the platform points from their centroid
+    spread_t = b_c_x - rrr_platform_point_x
+    spread_t_2 = b_c_y - rrr_platform_point_y
+    spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
+    # (rrr-K8) squared amplitude
+    pivot_size = abs(rho2_1_rrr)
+    # (rrr-V5) reciprocal vector 1
+    pivot_size_2 = abs(r_1_rrr_r0_y)
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size), inv_size_rrr*pivot_size_2)
+    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
+    return (
+    ok, (spread_t_3,), (-w_1_rrr_t, w_1_rrr_t_2, w_2_rrr_in_base_x, w_2_rrr_in_base_y,
+        least_pivots, disc_1_rrr,),
+    )
+
+
+def _condition_rrr2(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y = c
+    (
+    Kd_1_rrr2_t_2, Kd_1_rrr2_t_3, branch_1_rrr2, inv_Kd_1_rrr2_t_5, inv_rho2_1_rrr2_t_4,
+        inv_size_rrr2, inv_uu_2_rrr2_t, rho2_1_rrr2_t, rrr2_base_frame_xx, rrr2_base_frame_xy,
+        rrr2_base_frame_yx, rrr2_base_frame_yy, rrr2_base_point_x, rrr2_base_point_y,
+        rrr2_joint2_offset_x, rrr2_platform_joint_offset_x, rrr2_platform_point_x,
+        rrr2_platform_point_y, size_rrr2,
+    ) = k
+    t_x, t_y = s
+    # (rrr2-K1) from the base point to the connection point
+    S_rrr2_x = rrr2_platform_point_x + t_x - rrr2_base_point_x
+    S_rrr2_y = rrr2_platform_point_y + t_y - rrr2_base_point_y
+    # (rrr2-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    Kd_1_rrr2_t = S_rrr2_x*S_rrr2_x + S_rrr2_y*S_rrr2_y
+    Kd_1_rrr2 = 0.5*Kd_1_rrr2_t + Kd_1_rrr2_t_2 - Kd_1_rrr2_t_3
+    # (rrr2-K3) component along the reference direction
+    px_1_rrr2 = S_rrr2_x*rrr2_base_frame_xx + S_rrr2_y*rrr2_base_frame_yx
+    # (rrr2-K6) factor of the cosine in the equation of joint 1
+    Kc_1_rrr2 = px_1_rrr2*rrr2_joint2_offset_x
+    # (rrr2-K4) component across the reference direction
+    py_1_rrr2 = S_rrr2_x*rrr2_base_frame_xy + S_rrr2_y*rrr2_base_frame_yy
+    # (rrr2-K7) factor of the sine in the equation of joint 1
+    Ks_1_rrr2 = py_1_rrr2*rrr2_joint2_offset_x
+    # (rrr2-K8) squared amplitude
+    rho2_1_rrr2 = Kc_1_rrr2*Kc_1_rrr2 + Ks_1_rrr2*Ks_1_rrr2
+    # (rrr2-K9) discriminant
+    disc_1_rrr2 = rho2_1_rrr2 - Kd_1_rrr2*Kd_1_rrr2
+    # (rrr2-K10) root, with the sign of the branch
+    root_1_rrr2 = branch_1_rrr2*sqrt(disc_1_rrr2)
+    # (rrr2-K16) from the origin of joint 2 to the connection point
+    x_2_rrr2_x = Kd_1_rrr2*inv_Kd_1_rrr2_t_5*rrr2_joint2_offset_x - rrr2_joint2_offset_x
+    # (rrr2-K18) cosine of the angle of joint 2 from its reference direction
+    c_2_rrr2 = inv_uu_2_rrr2_t*rrr2_platform_joint_offset_x*x_2_rrr2_x
+    # (rrr2-K19) sine of the angle of joint 2 from its reference direction
+    s_2_rrr2 = (
+    inv_Kd_1_rrr2_t_5*inv_uu_2_rrr2_t*root_1_rrr2*rrr2_joint2_offset_x*rrr2_platform_joint_offset_x
+    )
+    # (rrr2-V2) from joint 1 to the connection point, along the links
+    r_1_rrr2_x = rrr2_joint2_offset_x + c_2_rrr2*rrr2_platform_joint_offset_x
+    r_1_rrr2_r0_y = r_1_rrr2_x*s_2_rrr2 - c_2_rrr2*rrr2_platform_joint_offset_x*s_2_rrr2
+    # (rrr2-K11) cosine of the angle of joint 1 from its reference direction
+    inv_rho2_1_rrr2 = 1.0/rho2_1_rrr2
+    c_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*Kd_1_rrr2 - Ks_1_rrr2*root_1_rrr2)
+    # (rrr2-K12) sine of the angle of joint 1 from its reference direction
+    s_1_rrr2 = inv_rho2_1_rrr2*(Kc_1_rrr2*root_1_rrr2 + Kd_1_rrr2*Ks_1_rrr2)
+    # (rrr2-V5) reciprocal vector 1
+    axis_y_rrr2_axes2_r1_x = c_1_rrr2*s_2_rrr2 - c_2_rrr2*s_1_rrr2
+    axis_y_rrr2_axes2_r1_y = c_1_rrr2*c_2_rrr2 + s_1_rrr2*s_2_rrr2
+    inv_r_1_rrr2_r0_y = 1.0/r_1_rrr2_r0_y
+    w_1_rrr2_t = (
+    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_yx +
+        axis_y_rrr2_axes2_r1_y*rrr2_base_frame_yy)
+    )
+    w_1_rrr2_t_2 = (
+    inv_r_1_rrr2_r0_y*(axis_y_rrr2_axes2_r1_x*rrr2_base_frame_xx +
+        axis_y_rrr2_axes2_r1_y*rrr2_base_frame_xy)
+    )
+    # (C2) rms distance of the platform points from their centroid
+    spread_t_4 = b_c_x - rrr2_platform_point_x
+    spread_t_5 = b_c_y - rrr2_platform_point_y
+    spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
+    # (rrr2-K8) squared amplitude
+    pivot_size_3 = abs(rho2_1_rrr2)
+    # (rrr2-V5) reciprocal vector 1
+    pivot_size_4 = abs(r_1_rrr2_r0_y)
+    # (rrr2-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots_2 = least(sqrt(inv_rho2_1_rrr2_t_4*pivot_size_3), inv_size_rrr2*pivot_size_4)
+    ok = (abs(rho2_1_rrr2) > _TOLERANCE * _TOLERANCE * rho2_1_rrr2_t) & (disc_1_rrr2 >= 0.0) & (abs(-r_1_rrr2_r0_y) > _TOLERANCE * size_rrr2)
+    return (ok, (spread_t_6,), (-w_1_rrr2_t, w_1_rrr2_t_2, least_pivots_2, disc_1_rrr2,),)
+
+
+def _condition_after(c, s, t, f):
+    sqrt = f.sqrt
+    total_rrr, total_rrr2 = t
+    # (C2) rms distance of the platform points from their centroid
+    spread = sqrt(0.5*total_rrr + 0.5*total_rrr2)
+    ok = True
+    return (ok, (spread,),)
+
+
 _DYNAMICS = _Plan(
     inputs=('X', 'V'),
 arrays=(('M', (2, 2)), ('Z', (2,)), ('H', (2, 3))),
@@ -3322,10 +3647,70 @@ arrays=(('potential', (1,)),),
         ((0, 0),),
     ),
 )
+_CONDITION = _Plan(
+    inputs=('X',),
+arrays=(('H', (2, 3)), ('lengths', (2,)), ('pivots', (2,)), ('reach', (2,))),
+    before=_Part(
+        _condition_before,
+('legs_size',),
+        None,
+        ((1, 1),),
+    ),
+    legs=(
+        _LegPart(
+            _condition_rrr,
+            "rrr",
+('b_c_x', 'b_c_y'),
+('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5', 'inv_rho2_1_rrr_t_4',
+            'inv_rrr_platform_joint_offset_x', 'inv_size_rrr', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t',
+            'rrr_base_frame_xx', 'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy',
+            'rrr_base_point_x', 'rrr_base_point_y', 'rrr_joint2_offset_x',
+            'rrr_platform_joint_offset_x', 'rrr_platform_point_x', 'rrr_platform_point_y',
+            'size_rrr'),
+(),
+(0, 1),
+            1,
+            (
+(0, (0,)),
+(0, (3,)),
+(0, (1,)),
+(0, (4,)),
+(2, (0,)),
+(3, (0,)),
+            ),
+        ),
+        _LegPart(
+            _condition_rrr2,
+            "rrr2",
+('b_c_x', 'b_c_y'),
+('Kd_1_rrr2_t_2', 'Kd_1_rrr2_t_3', 'branch_1_rrr2', 'inv_Kd_1_rrr2_t_5', 'inv_rho2_1_rrr2_t_4',
+            'inv_size_rrr2', 'inv_uu_2_rrr2_t', 'rho2_1_rrr2_t', 'rrr2_base_frame_xx',
+            'rrr2_base_frame_xy', 'rrr2_base_frame_yx', 'rrr2_base_frame_yy', 'rrr2_base_point_x',
+            'rrr2_base_point_y', 'rrr2_joint2_offset_x', 'rrr2_platform_joint_offset_x',
+            'rrr2_platform_point_x', 'rrr2_platform_point_y', 'size_rrr2'),
+(),
+(0, 1),
+            1,
+            (
+(0, (2,)),
+(0, (5,)),
+(2, (1,)),
+(3, (1,)),
+            ),
+        ),
+    ),
+    after=_Part(
+        _condition_after,
+(),
+(),
+        ((1, 0),),
+    ),
+)
 _DEFAULT = Parameters()
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
 
 
 def _solve(a, b):
@@ -3356,7 +3741,8 @@ def _solve_one(a, b):
         a[i] = [v / size for v in row] + [b[i] / size]
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[best] = a[best], a[k]
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
         if not abs(a[k][k]) > _PIVOT:
             return failure
         head = a[k]
@@ -3377,7 +3763,9 @@ def _solve_block(a, b):
     a = np.concatenate((a, b[:, :, None]), axis=2) / size
     which = np.arange(states)
     for k in range(n):
-        best = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        column = np.abs(a[:, k:, k])
+        best = np.argmax(column, axis=1)
+        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
         a[which, k], a[which, best] = a[which, best], a[which, k].copy()
         good &= np.abs(a[:, k, k]) > _PIVOT
         factor = a[:, k + 1 :, k] / a[:, k, k, None]
@@ -3387,14 +3775,6 @@ def _solve_block(a, b):
         x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
     x[~good] = np.nan
     return x
-
-
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or ValueError."""
-    value = np.asarray(value, dtype=float)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
 
 
 def M(X, p=None):
@@ -3441,46 +3821,54 @@ def _known(array, axes, *inputs):
     return _together(failed, (array, axes))[0]
 
 
-def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
+def _weights(weights):
+    """The weights (..., NU) of the drives."""
+    if weights is None:
+        return np.ones(NU)
+    weights = _vector("inverse_dynamics", "weights", weights, NU)
+    if not np.all((weights > 0.0) & (weights < np.inf)):
+        raise ValueError("inverse_dynamics: weights must be positive and finite")
+    return weights
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
-    The wrench (..., NW) acts on the platform. weights (NU,) > 0: least sum of weights tau^2.
+    The wrench (..., NW) acts on the platform. weights (..., NU) > 0: least sum of weights tau^2.
     """
     X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
     A = _vector("inverse_dynamics", "A", A, NV)
+    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
+    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
     required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - _external("inverse_dynamics", wrench)
+    force = required - external
     return _drive_forces(matrix, rest[0] if rest else None, force, weights)
 
 
-def forward_dynamics(X, V, tau, p=None, wrench=None):
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
     """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau = _vector("forward_dynamics", "tau", tau, NU)
+    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
+    _lead(X=X, V=V, tau=tau, wrench=external)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    external = _external("forward_dynamics", wrench)
     with np.errstate(all="ignore"):
         force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _solve(inertia, force)
 
 
-def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
-    """
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
     X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A = _vector("complete_acceleration", "A", A, NV)
-    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
+    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
     return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
     """tau of least weighted norm with H tau = force."""
     rows = list(_DRIVEN_ROWS)
-    scale = np.ones(NU) if weights is None else _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all(scale > 0.0):
-        raise ValueError("inverse_dynamics: weights must be positive")
-    scale = 1.0 / np.sqrt(scale)
-    h, f = matrix[..., rows, :] * scale, force[..., rows]
+    scale = 1.0 / np.sqrt(weights)
+    h, f = matrix[..., rows, :] * scale[..., None, :], force[..., rows]
     return scale * _least_norm(h, f)
 
 
@@ -3502,13 +3890,68 @@ def _least_norm(h, f):
 
 
 def null_space(X, p=None):
-    """Orthonormal basis (..., NU, NU - rank) of the tau with H tau = 0."""
-    matrix = H(X, p)[..., list(_DRIVEN_ROWS), :]
+    """Orthonormal basis (..., NU, 1) of the tau with H tau = 0."""
+    matrix = H(X, p)
     bad = np.isnan(matrix).any(axis=(-1, -2))
     _, _, vt = np.linalg.svd(np.where(bad[..., None, None], 0.0, matrix))
-    basis = np.array(np.swapaxes(vt[..., min(len(_DRIVEN_ROWS), NU) :, :], -1, -2))
+    basis = np.array(np.swapaxes(vt[..., 2:, :], -1, -2))
     basis[bad] = np.nan
     return basis
+
+
+_MOMENT_ROWS = ()  # rows of H that are moments
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: sigma (..., 2), legs (..., 2), status (...).
+
+    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
+    rule the rms distance of the platform points from their centroid (where they coincide, the
+    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
+    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
+    converged, as in C; sigma and legs are NaN where it is not 0.
+    """
+    return _condition("condition", X, p, length)
+
+
+def _condition(name, X, p, length, columns=NU):
+    """sigma of the first columns of H, margins of the legs, status codes."""
+    X = _vector(name, "X", X, NQ)
+    p = _DEFAULT if p is None else p
+    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
+        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    lead = X.shape[:-1]
+    vectors = {"X": X.reshape(-1, NQ)}
+    states = len(vectors["X"])
+    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
+    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
+    with np.errstate(all="ignore"):
+        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
+        _run_block(_CONDITION, p, flat, made)
+        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
+        spread, legs_size = found["lengths"].T
+        if length is None:
+            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
+        matrix = found["H"]
+        matrix[:, list(_MOMENT_ROWS)] /= length
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
+        status = np.select(
+            [
+                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
+                ~(found["reach"] >= 0.0).all(axis=1),
+                ~(found["pivots"] > _TOLERANCE).all(axis=1),
+                ~finite,
+            ],
+            [3, 1, 2, 3],
+            0,
+        )
+    good = (status == 0)[:, None]
+    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
+    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
+    return (
+        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
+        status.reshape(lead)[()],
+    )
 
 
 def inverse_kinematics(X, p=None):
@@ -3529,15 +3972,16 @@ def joint_accelerations(X, V, A, p=None):
         _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
 
 
-def leg_reactions(X, V, A, p=None, wrench=None):
+def leg_reactions(X, V, A, p=None, *, wrench=None):
     """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
 
     The drives give the forces of `inverse_dynamics`.
     """
     X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
     A = _vector("leg_reactions", "A", A, NV)
+    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
     forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench)
+    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
     parts = [(tau, drive, _ACTUATOR_LEGS)]
     forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
     for amounts, vectors, legs in parts:
@@ -3549,6 +3993,7 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
+    _lead(X=X, V=V)
     inertia = M(X, p)
     with np.errstate(all="ignore"):
         kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
@@ -3563,8 +4008,8 @@ def forward_kinematics(q_actuated, X0, p=None):
     Extra coordinates that the drives do not determine stay.  NaN where no X is found.
     """
     q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0 = _vector("forward_kinematics", "X0", X0, NQ)
-    lead = np.broadcast_shapes(q_actuated.shape[:-1], X0.shape[:-1])
+    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
+    lead = _lead(q_actuated=q_actuated, X0=X0)
     target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
     X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
     found = [_find_pose(q, x, p) for q, x in zip(target, X)]

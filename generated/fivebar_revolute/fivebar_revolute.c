@@ -3,6 +3,12 @@
 
 #include "fivebar_revolute.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(FIVEBAR_REVOLUTE_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define FIVEBAR_REVOLUTE_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef fivebar_revolute_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -229,7 +267,17 @@ INLINE int all_about_z(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 9) {
-        ok &= magnitude(x[8] - 1) <= R(1e-6);
+        ok &= magnitude(x[8] - 1) <= SNAPPED;
+    }
+    return ok;
+}
+
+/* izz alone counts in the plane. */
+INLINE int all_planar_inertias(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= x[9*i + 8] >= 0;
     }
     return ok;
 }
@@ -293,39 +341,39 @@ const fivebar_revolute_real fivebar_revolute_HOME_Q[FIVEBAR_REVOLUTE_NJ] = {R(2.
 static int acceptable(const fivebar_revolute_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
+    ok &= all_within(&p->gravity[0], 3);
     ok &= all_zero(&p->gravity[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->rrr_base_point[0][0], 6);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rrr_base_point[0][0], 6);
     ok &= all_zero(&p->rrr_base_point[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_base_frame[0][0][0], 18);
+    ok &= all_within(&p->rrr_base_frame[0][0][0], 18);
     ok &= all_rotations(&p->rrr_base_frame[0][0][0], 2);
     ok &= all_about_z(&p->rrr_base_frame[0][0][0], 2);
-    ok &= all_finite(&p->rrr_platform_point[0][0], 6);
+    ok &= all_within(&p->rrr_platform_point[0][0], 6);
     ok &= all_zero(&p->rrr_platform_point[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_joint2_offset[0][0], 6);
+    ok &= all_within(&p->rrr_joint2_offset[0][0], 6);
     ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_platform_joint_offset[0][0], 6);
+    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 6);
     ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_link1_mass[0], 2);
+    ok &= all_within(&p->rrr_link1_mass[0], 2);
     ok &= none_negative(&p->rrr_link1_mass[0], 2);
-    ok &= all_finite(&p->rrr_link1_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 6);
     ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_link1_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrr_link1_inertia[0][0][0], 2);
-    ok &= all_finite(&p->rrr_link2_mass[0], 2);
+    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 18);
+    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrr_link2_mass[0], 2);
     ok &= none_negative(&p->rrr_link2_mass[0], 2);
-    ok &= all_finite(&p->rrr_link2_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 6);
     ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_link2_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrr_link2_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 18);
+    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], 2);
     return ok;
 }
 
@@ -338,6 +386,9 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     real total_rrr = 0;
     real total_rrr_x = 0;
     real total_rrr_y = 0;
+    real total_rrr_x_2 = 0;
+    real total_rrr_y_2 = 0;
+    real total_rrr_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -346,8 +397,11 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     /* (L2) first moment about the platform origin */
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.5)*root(2);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 2; ++leg) {
         const real rrr_base_point_x = params->rrr_base_point[leg][0];
         const real rrr_base_point_y = params->rrr_base_point[leg][1];
@@ -376,32 +430,28 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         const real Kd_1_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real Kd_1_t_2 = R(0.5)*Kd_1_t;
         const real Kd_1_t_3 = R(0.5)*uu_2_t;
-        /* (rrr-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = rrr_base_point_x*rrr_base_point_x +
-            rrr_base_point_y*rrr_base_point_y;
-        const real size_t_2 = rrr_platform_point_x*rrr_platform_point_x +
-            rrr_platform_point_y*rrr_platform_point_y;
-        const real size_t_3 = Kd_1_t + size_t_ + size_t_2 + uu_2_t;
-        const real size_ = root(size_t_3);
+        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_t_ = R(5.257946636889999e-07) + Kd_1_t + uu_2_t;
+        const real size_ = root(size_t_);
         /* (rrr-K8) squared amplitude */
-        const real rho2_1_t = size_*size_*size_t_3;
+        const real rho2_1_t = size_*size_*size_t_;
         /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
         const real inv_Kd_1_t_5 = 1/Kd_1_t;
         /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_t = 1/uu_2_t;
-        /* (rrr-G3) inertia tensor of link 1 about the origin of link 1 */
+        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
         const real J_1_zz = rrr_link1_inertia_zz + J_1_t*rrr_link1_mass;
-        /* (rrr-G4) connection point to the centre of mass of link 2 */
+        /* (rrr-G5) connection point to the centre of mass of link 2 */
         const real rho_tip_2_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G6) inertia tensor of link 2 about the connection point */
+        /* (rrr-G7) inertia tensor of link 2 about the connection point */
         const real J_2_t = rho_tip_2_x*rho_tip_2_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_zz = rrr_link2_inertia_zz + J_2_t*rrr_link2_mass;
         /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
         const real Jc_1_zz = J_1_zz + J_2_zz;
-        /* (rrr-G5) first moment of link 2 about the connection point */
+        /* (rrr-G6) first moment of link 2 about the connection point */
         const real h_2_x = rho_tip_2_x*rrr_link2_mass;
         const real h_2_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
         /* (rrr-V6) reciprocal vector 2 */
@@ -421,7 +471,7 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
            less gravity */
         const real g_r0_x = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
         const real g_r0_y = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G2) first moment of link 1 about the origin of link 1 */
+        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
         const real h_1_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (L2) first moment about the platform origin */
@@ -432,6 +482,10 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
             rrr_base_frame_yx*rrr_base_point_y;
         const real b_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
+        /* (rrr-K8) squared amplitude */
+        const real inv_rho2_1_t_4 = 1/rho2_1_t;
+        /* (rrr-V5) reciprocal vector 1 */
+        const real inv_size = 1/size_;
         model->J_1_zz[leg] = J_1_zz;
         model->J_2_zz[leg] = J_2_zz;
         model->Jc_1_zz[leg] = Jc_1_zz;
@@ -451,7 +505,9 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         model->h_2_x[leg] = h_2_x;
         model->h_2_y[leg] = h_2_y;
         model->inv_Kd_1_t_5[leg] = inv_Kd_1_t_5;
+        model->inv_rho2_1_t_4[leg] = inv_rho2_1_t_4;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
+        model->inv_size[leg] = inv_size;
         model->inv_uu_2_t[leg] = inv_uu_2_t;
         model->rho2_1_t[leg] = rho2_1_t;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
@@ -470,6 +526,9 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
         total_rrr += rrr_link2_mass;
         total_rrr_x += h_star_t_3;
         total_rrr_y += h_star_t_4;
+        total_rrr_x_2 += rrr_platform_point_x;
+        total_rrr_y_2 += rrr_platform_point_y;
+        total_rrr_2 += size_t_;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rrr;
@@ -479,10 +538,18 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
     /* (L2) first moment about the platform origin */
     const real h_star_x = h_star_t + total_rrr_x;
     const real h_star_y = h_star_t_2 + total_rrr_y;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.5)*total_rrr_x_2;
+    const real b_c_y = R(0.5)*total_rrr_y_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = spread_t*root(total_rrr_2);
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return FIVEBAR_REVOLUTE_OK;
 }
@@ -492,6 +559,9 @@ int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revo
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -501,23 +571,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -525,6 +592,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -553,47 +621,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -614,7 +685,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -691,9 +762,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -728,8 +801,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -2744,6 +2817,180 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_after(w, s, potential);
 }
 
+/* ---- condition: 91 mul, 50 add, 4 div, 5 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[4][8], unreachable[8], singular[8];
+} condition_results_rrr;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        lengths[1*w + k] = legs_size;
+    }
+}
+
+INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real Kd_1_t_2 = m->Kd_1_t_2[i];
+        const real Kd_1_t_3 = m->Kd_1_t_3[i];
+        const real branch_1 = m->branch_1[i];
+        const real inv_Kd_1_t_5 = m->inv_Kd_1_t_5[i];
+        const real inv_rho2_1_t_4 = m->inv_rho2_1_t_4[i];
+        const real inv_size = m->inv_size[i];
+        const real inv_uu_2_t = m->inv_uu_2_t[i];
+        const real rho2_1_t = m->rho2_1_t[i];
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        /* (rrr-K1) from the base point to the connection point */
+        const real S_x = rrr_platform_point_x + t_x - rrr_base_point_x;
+        const real S_y = rrr_platform_point_y + t_y - rrr_base_point_y;
+        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real Kd_1_t = S_x*S_x + S_y*S_y;
+        const real Kd_1 = R(0.5)*Kd_1_t + Kd_1_t_2 - Kd_1_t_3;
+        /* (rrr-K3) component along the reference direction */
+        const real px_1 = S_x*rrr_base_frame_xx + S_y*rrr_base_frame_yx;
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
+        const real Kc_1 = px_1*rrr_joint2_offset_x;
+        /* (rrr-K4) component across the reference direction */
+        const real py_1 = S_x*rrr_base_frame_xy + S_y*rrr_base_frame_yy;
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
+        const real Ks_1 = py_1*rrr_joint2_offset_x;
+        /* (rrr-K8) squared amplitude */
+        const real rho2_1 = Kc_1*Kc_1 + Ks_1*Ks_1;
+        /* (rrr-K9) discriminant */
+        const real disc_1 = rho2_1 - Kd_1*Kd_1;
+        /* (rrr-K10) root, with the sign of the branch */
+        const real root_1 = branch_1*root(disc_1);
+        /* (rrr-K16) from the origin of joint 2 to the connection point */
+        const real x_2_x = Kd_1*inv_Kd_1_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x;
+        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
+        const real c_2 = inv_uu_2_t*rrr_platform_joint_offset_x*x_2_x;
+        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
+        const real s_2 =
+            inv_Kd_1_t_5*inv_uu_2_t*root_1*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
+        /* (rrr-V2) from joint 1 to the connection point, along the links */
+        const real r_1_x = rrr_joint2_offset_x + c_2*rrr_platform_joint_offset_x;
+        const real r_1_r0_y = r_1_x*s_2 - c_2*rrr_platform_joint_offset_x*s_2;
+        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rho2_1 = 1/rho2_1;
+        const real c_1 = inv_rho2_1*(Kc_1*Kd_1 - Ks_1*root_1);
+        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_rho2_1*(Kc_1*root_1 + Kd_1*Ks_1);
+        /* (rrr-V5) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = c_1*s_2 - c_2*s_1;
+        const real axis_y_rrr_axes2_r1_y = c_1*c_2 + s_1*s_2;
+        const real inv_r_1_r0_y = 1/r_1_r0_y;
+        const real w_1_t = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
+        const real w_1_t_2 = inv_r_1_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - rrr_platform_point_x;
+        const real spread_t_3 = b_c_y - rrr_platform_point_y;
+        const real spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3;
+        /* (rrr-K8) squared amplitude */
+        const real pivot_size = magnitude(rho2_1);
+        /* (rrr-V5) reciprocal vector 1 */
+        const real pivot_size_2 = magnitude(r_1_r0_y);
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(root(inv_rho2_1_t_4*pivot_size), inv_size*pivot_size_2);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_4 : spread_t_4;  /* total_rrr */
+        o->entry[0][k] = -w_1_t;
+        o->entry[1][k] = w_1_t_2;
+        o->entry[2][k] = least_pivots;
+        o->entry[3][k] = disc_1;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*rho2_1_t) +
+            UNLESS(magnitude(-r_1_r0_y) > TOLERANCE*size_);
+        o->unreachable[k] = UNLESS(disc_1 >= 0);
+    }
+}
+
+INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t leg, size_t
+    first, real *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(2 + leg)*w + k] = o->entry[1][first + k];
+        pivots[(leg)*w + k] = o->entry[2][first + k];
+        reach[(leg)*w + k] = o->entry[3][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rrr = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_rrr);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_rrr results_rrr;
+    condition_before(m, w, X, s, lengths);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
+            condition_place_rrr(w, &results_rrr, leg, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrr.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -2821,12 +3068,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int fivebar_revolute_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 2) ? FIVEBAR_REVOLUTE_OK : FIVEBAR_REVOLUTE_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 2, 1, &code, completed);
     return code;
 }
@@ -2877,12 +3125,16 @@ int fivebar_revolute_energy(const prepared *m, const real *X, const real *V, rea
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 2};
     real q[4];
     int code = fivebar_revolute_inverse_kinematics(m, X, q);
+    if (code != FIVEBAR_REVOLUTE_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 2; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -2900,8 +3152,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[4];
     int code = fivebar_revolute_H(m, X, H);
-    fill_rows(2, H, gap, a);
     if (code == FIVEBAR_REVOLUTE_OK) {
+        fill_rows(2, H, gap, a);
         least_squares(2, 2, a, step);
     }
     return code;
@@ -2910,7 +3162,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 2 };
-    real found[2], gap[GAPS], trial[2], next[GAPS], step[2];
+    real found[2], gap[GAPS] = {0}, trial[2] = {0}, next[GAPS] = {0}, step[2] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 2) ? mismatch(m, q_actuated, X0, gap, &size)
         : FIVEBAR_REVOLUTE_INVALID;
@@ -2939,6 +3191,97 @@ int fivebar_revolute_forward_kinematics(const prepared *m, const real *q_actuate
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    real lengths[2], reach[2];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(2, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    check(4, 1, H, t->overflow);
+    check(2, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int fivebar_revolute_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[4], a[4], found[2], pivots[2];
+    const int code = matrices(m, X, H, pivots);
+    if (code != FIVEBAR_REVOLUTE_OK) {
+        refuse(2, sigma);
+        refuse(2, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 2; ++i) {
+        for (size_t j = 0; j < 2; ++j) {
+            a[i*2 + j] = H[i*2 + j];
+        }
+    }
+    singular_values(2, 2, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 /* ---- one state, and batches ---- */
 
 int fivebar_revolute_M(const fivebar_revolute_model *model, const fivebar_revolute_real *X,
@@ -2956,6 +3299,11 @@ size_t fivebar_revolute_M_batch(const fivebar_revolute_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 2*i, M + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_M(model, X + 2*(i + k), M + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -2981,6 +3329,11 @@ size_t fivebar_revolute_Z_batch(const fivebar_revolute_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 2*i, V + 2*i, Z + 2*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_Z(model, X + 2*(i + k), V + 2*(i + k), Z + 2*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3005,6 +3358,11 @@ size_t fivebar_revolute_H_batch(const fivebar_revolute_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 2*i, H + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_H(model, X + 2*(i + k), H + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3031,6 +3389,12 @@ size_t fivebar_revolute_dynamics_batch(const fivebar_revolute_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 2*i, V + 2*i, M + 4*i, Z + 2*i, H + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_dynamics(model, X + 2*(i + k), V + 2*(i + k), M + 4*(i + k), Z + 2*(i
+                    + k), H + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3055,6 +3419,11 @@ size_t fivebar_revolute_inverse_kinematics_batch(const fivebar_revolute_model *m
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 2*i, q + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_inverse_kinematics(model, X + 2*(i + k), q + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3080,6 +3449,11 @@ size_t fivebar_revolute_joint_rates_batch(const fivebar_revolute_model *model, s
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 2*i, V + 2*i, rates + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_joint_rates(model, X + 2*(i + k), V + 2*(i + k), rates + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3106,6 +3480,12 @@ size_t fivebar_revolute_joint_accelerations_batch(const fivebar_revolute_model *
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, accelerations + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_joint_accelerations(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i +
+                    k), accelerations + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3134,6 +3514,12 @@ size_t fivebar_revolute_inverse_dynamics_batch(const fivebar_revolute_model *mod
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 2*i, V + 2*i, A + 2*i, wrench ? wrench + 2*i : NULL, tau +
             2*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_inverse_dynamics(model, X + 2*(i + k), V + 2*(i + k), A + 2*(i + k),
+                    wrench ? wrench + 2*(i + k) : NULL, tau + 2*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3162,6 +3548,12 @@ size_t fivebar_revolute_forward_dynamics_batch(const fivebar_revolute_model *mod
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 2*i, V + 2*i, tau + 2*i, wrench ? wrench + 2*i : NULL, A +
             2*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != FIVEBAR_REVOLUTE_OK) {
+                codes[k] = fivebar_revolute_forward_dynamics(model, X + 2*(i + k), V + 2*(i + k), tau + 2*(i + k),
+                    wrench ? wrench + 2*(i + k) : NULL, A + 2*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3174,12 +3566,12 @@ size_t fivebar_revolute_forward_dynamics_batch(const fivebar_revolute_model *mod
 
 size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *A, fivebar_revolute_real *completed, int *status)
+    *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = fivebar_revolute_complete_acceleration(model, X + 2*i, V + 2*i, A + 2*i,
-            completed + 2*i);
+        const int code = fivebar_revolute_complete_acceleration(model, X + 2*i, V + 2*i, A + 2*i, wrench ?
+            wrench + 2*i : NULL, completed + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -3217,6 +3609,18 @@ size_t fivebar_revolute_forward_kinematics_batch(const fivebar_revolute_model *m
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = fivebar_revolute_forward_kinematics(model, q_actuated + 2*i, X0 + 2*i, X + 2*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs, int
+    *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = fivebar_revolute_condition(model, X + 2*i, sigma + 2*i, legs + 2*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask fivebar_revolute_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so fivebar_revolute.c refuses them unless FIVEBAR_REVOLUTE_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as FIVEBAR_REVOLUTE_OK.
  */
 #ifndef FIVEBAR_REVOLUTE_H_INCLUDED
 #define FIVEBAR_REVOLUTE_H_INCLUDED
@@ -87,25 +93,28 @@ typedef struct {
 
 /* What depends on the parameters alone; set by fivebar_revolute_prepare, then only read. */
 typedef struct {
-    fivebar_revolute_real Z_p_x, Z_p_y, gravity_x, gravity_y, h_star_x, h_star_y, m_star;
+    fivebar_revolute_real Z_p_x, Z_p_y, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x, h_star_y,
+            legs_size, m_star, spread_t;
     /* legs of type rrr */
     fivebar_revolute_real J_1_zz[2], J_2_zz[2], Jc_1_zz[2], Kd_1_t_2[2], Kd_1_t_3[2], b_r0_x[2],
             b_r0_y[2], branch_1[2], d_Gamma_1_t[2], d_Gamma_1_y[2], d_c_yy[2], d_phi_2_t[2],
             g_r0_x[2], g_r0_y[2], h_1_x[2], h_1_y[2], h_2_x[2], h_2_y[2], inv_Kd_1_t_5[2],
-            inv_rrr_platform_joint_offset_x[2], inv_uu_2_t[2], rho2_1_t[2], rrr_base_frame_xx[2],
-            rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2], rrr_base_point_x[2],
-            rrr_base_point_y[2], rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
-            rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
-            size_[2];
+            inv_rho2_1_t_4[2], inv_rrr_platform_joint_offset_x[2], inv_size[2], inv_uu_2_t[2],
+            rho2_1_t[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2],
+            rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2], rrr_joint2_offset_x[2],
+            rrr_link1_mass[2], rrr_link2_mass[2], rrr_platform_joint_offset_x[2],
+            rrr_platform_point_x[2], rrr_platform_point_y[2], size_[2];
 } fivebar_revolute_model;
 
 extern const fivebar_revolute_params fivebar_revolute_default_params;
 extern const fivebar_revolute_real fivebar_revolute_HOME_X[FIVEBAR_REVOLUTE_NQ];
 extern const fivebar_revolute_real fivebar_revolute_HOME_Q[FIVEBAR_REVOLUTE_NJ];
 
-/* Prepare a model.  FIVEBAR_REVOLUTE_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  FIVEBAR_REVOLUTE_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int fivebar_revolute_prepare(const fivebar_revolute_params *params, fivebar_revolute_model *model);
 
 /* Inertia matrix M. 124 mul, 80 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -182,14 +191,14 @@ size_t fivebar_revolute_forward_dynamics_batch(const fivebar_revolute_model *mod
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
     *tau, const fivebar_revolute_real *wrench, fivebar_revolute_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int fivebar_revolute_complete_acceleration(const fivebar_revolute_model *model, const
     fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real *A,
-    fivebar_revolute_real *completed);
+    const fivebar_revolute_real *wrench, fivebar_revolute_real *completed);
 size_t fivebar_revolute_complete_acceleration_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *X, const fivebar_revolute_real *V, const fivebar_revolute_real
-    *A, fivebar_revolute_real *completed, int *status);
+    *A, const fivebar_revolute_real *wrench, fivebar_revolute_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 182 mul, 104 add, 4 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -217,6 +226,16 @@ int fivebar_revolute_forward_kinematics(const fivebar_revolute_model *model, con
 size_t fivebar_revolute_forward_kinematics_batch(const fivebar_revolute_model *model, size_t n,
     const fivebar_revolute_real *q_actuated, const fivebar_revolute_real *X0,
     fivebar_revolute_real *X, int *status);
+
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 91 mul, 50 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (2), legs (2). */
+int fivebar_revolute_condition(const fivebar_revolute_model *model, const fivebar_revolute_real
+    *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs);
+size_t fivebar_revolute_condition_batch(const fivebar_revolute_model *model, size_t n, const
+    fivebar_revolute_real *X, fivebar_revolute_real *sigma, fivebar_revolute_real *legs, int
+    *status);
 
 #ifdef __cplusplus
 }

@@ -3,6 +3,12 @@
 
 #include "hexaglide.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(HEXAGLIDE_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define HEXAGLIDE_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef hexaglide_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -320,29 +358,29 @@ const hexaglide_real hexaglide_HOME_Q[HEXAGLIDE_NJ] = {R(0.1), R(0.55), R(0.35),
 static int acceptable(const hexaglide_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->pus_base_point[0][0], 18);
-    ok &= all_finite(&p->pus_base_frame[0][0][0], 54);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->pus_base_point[0][0], 18);
+    ok &= all_within(&p->pus_base_frame[0][0][0], 54);
     ok &= all_rotations(&p->pus_base_frame[0][0][0], 6);
-    ok &= all_finite(&p->pus_platform_point[0][0], 18);
-    ok &= all_finite(&p->pus_platform_joint_offset[0][0], 18);
+    ok &= all_within(&p->pus_platform_point[0][0], 18);
+    ok &= all_within(&p->pus_platform_joint_offset[0][0], 18);
     ok &= all_zero(&p->pus_platform_joint_offset[0][0] + 1, 6, 3);
     ok &= all_zero(&p->pus_platform_joint_offset[0][0] + 2, 6, 3);
-    ok &= all_finite(&p->pus_link1_mass[0], 6);
+    ok &= all_within(&p->pus_link1_mass[0], 6);
     ok &= none_negative(&p->pus_link1_mass[0], 6);
-    ok &= all_finite(&p->pus_link1_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->pus_link1_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->pus_link1_inertia[0][0][0], 6);
-    ok &= all_finite(&p->pus_link3_mass[0], 6);
+    ok &= all_within(&p->pus_link1_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->pus_link1_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->pus_link1_inertia[0][0][0], 6);
+    ok &= all_within(&p->pus_link3_mass[0], 6);
     ok &= none_negative(&p->pus_link3_mass[0], 6);
-    ok &= all_finite(&p->pus_link3_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->pus_link3_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->pus_link3_inertia[0][0][0], 6);
+    ok &= all_within(&p->pus_link3_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->pus_link3_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->pus_link3_inertia[0][0][0], 6);
     return ok;
 }
 
@@ -362,6 +400,10 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     real total_pus_yy = 0;
     real total_pus_yz = 0;
     real total_pus_zz = 0;
+    real total_pus_x_2 = 0;
+    real total_pus_y_2 = 0;
+    real total_pus_z_2 = 0;
+    real total_pus_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -390,9 +432,12 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.16666666666666666)*root(6);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 6; ++leg) {
         const real pus_base_point_x = params->pus_base_point[leg][0];
         const real pus_base_point_y = params->pus_base_point[leg][1];
@@ -430,20 +475,14 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real branch_2 = signs_branch_2[leg];
         /* (pus-K16) squared length, across the axis, of the direction fixed in link 3 */
         const real uu_3_t = pus_platform_joint_offset_x*pus_platform_joint_offset_x;
-        /* (pus-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = pus_base_point_x*pus_base_point_x + pus_base_point_y*pus_base_point_y
-            + pus_base_point_z*pus_base_point_z;
-        const real size_t_2 = pus_platform_point_x*pus_platform_point_x;
-        const real size_t_3 = pus_platform_point_y*pus_platform_point_y;
-        const real size_t_4 = pus_platform_point_z*pus_platform_point_z;
-        const real size_t_5 = size_t_2 + size_t_3 + size_t_4;
-        const real size_t_6 = size_t_ + size_t_5 + uu_3_t;
-        const real size_ = root(size_t_6);
+        /* (pus-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_t_ = R(4.9e-07) + uu_3_t;
+        const real size_ = root(size_t_);
         /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
         const real inv_uu_3_t = 1/uu_3_t;
-        /* (pus-G3) connection point to the centre of mass of link 3 */
+        /* (pus-G4) connection point to the centre of mass of link 3 */
         const real rho_tip_3_x = pus_link3_centre_of_mass_x - pus_platform_joint_offset_x;
-        /* (pus-G5) inertia tensor of link 3 about the connection point */
+        /* (pus-G6) inertia tensor of link 3 about the connection point */
         const real J_3_t = rho_tip_3_x*rho_tip_3_x;
         const real J_3_t_2 = pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_y;
         const real J_3_t_3 = pus_link3_centre_of_mass_z*pus_link3_centre_of_mass_z;
@@ -457,7 +496,7 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real J_3_yz = pus_link3_inertia_yz -
             pus_link3_centre_of_mass_y*pus_link3_centre_of_mass_z*pus_link3_mass;
         const real J_3_zz = pus_link3_inertia_zz - pus_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (pus-G4) first moment of link 3 about the connection point */
+        /* (pus-G5) first moment of link 3 about the connection point */
         const real h_3_x = pus_link3_mass*rho_tip_3_x;
         const real h_3_y = pus_link3_centre_of_mass_y*pus_link3_mass;
         const real h_3_z = pus_link3_centre_of_mass_z*pus_link3_mass;
@@ -479,12 +518,16 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real h_star_t_5 = pus_link3_mass*pus_platform_point_y;
         const real h_star_t_6 = pus_link3_mass*pus_platform_point_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = pus_link3_mass*(size_t_2 - size_t_5);
-        const real J_star_t_12 = pus_link3_mass*pus_platform_point_x*pus_platform_point_y;
-        const real J_star_t_13 = pus_link3_mass*pus_platform_point_x*pus_platform_point_z;
-        const real J_star_t_14 = pus_link3_mass*(size_t_3 - size_t_5);
-        const real J_star_t_15 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
-        const real J_star_t_16 = pus_link3_mass*(size_t_4 - size_t_5);
+        const real J_star_t_11 = pus_platform_point_x*pus_platform_point_x;
+        const real J_star_t_12 = pus_platform_point_y*pus_platform_point_y;
+        const real J_star_t_13 = pus_platform_point_z*pus_platform_point_z;
+        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
+        const real J_star_t_15 = pus_link3_mass*(J_star_t_11 - J_star_t_14);
+        const real J_star_t_16 = pus_link3_mass*pus_platform_point_x*pus_platform_point_y;
+        const real J_star_t_17 = pus_link3_mass*pus_platform_point_x*pus_platform_point_z;
+        const real J_star_t_18 = pus_link3_mass*(J_star_t_12 - J_star_t_14);
+        const real J_star_t_19 = pus_link3_mass*pus_platform_point_y*pus_platform_point_z;
+        const real J_star_t_20 = pus_link3_mass*(J_star_t_13 - J_star_t_14);
         /* (pus-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*pus_base_frame_xx + gravity_y*pus_base_frame_yx +
@@ -499,7 +542,7 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         const real Sigma_3_xx = trace_J_3 - J_3_xx;
         const real Sigma_3_yy = trace_J_3 - J_3_zz;
         const real Sigma_3_zz = trace_J_3 - J_3_yy;
-        /* (pus-G2) first moment of link 1 about the origin of link 1 */
+        /* (pus-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_x = pus_link1_centre_of_mass_x*pus_link1_mass;
         const real h_1_y = pus_link1_centre_of_mass_y*pus_link1_mass;
         const real h_1_z = pus_link1_centre_of_mass_z*pus_link1_mass;
@@ -510,6 +553,10 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
             pus_base_frame_yy*pus_base_point_y + pus_base_frame_zy*pus_base_point_z);
         const real potential_t_2 = pus_link1_mass*(pus_base_frame_xz*pus_base_point_x +
             pus_base_frame_yz*pus_base_point_y + pus_base_frame_zz*pus_base_point_z);
+        /* (pus-K9) squared amplitude */
+        const real inv_size_t = 1/size_t_;
+        /* (pus-V4) reciprocal vector 1 */
+        const real inv_size = 1/size_;
         model->J_3_xx[leg] = J_3_xx;
         model->J_3_xy[leg] = J_3_xy;
         model->J_3_xz[leg] = J_3_xz;
@@ -535,6 +582,8 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->h_3_y[leg] = h_3_y;
         model->h_3_z[leg] = h_3_z;
         model->inv_pus_platform_joint_offset_x[leg] = inv_pus_platform_joint_offset_x;
+        model->inv_size[leg] = inv_size;
+        model->inv_size_t[leg] = inv_size_t;
         model->inv_uu_3_t[leg] = inv_uu_3_t;
         model->potential_t[leg] = potential_t;
         model->potential_t_2[leg] = potential_t_2;
@@ -557,18 +606,22 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
         model->pus_platform_point_y[leg] = pus_platform_point_y;
         model->pus_platform_point_z[leg] = pus_platform_point_z;
         model->size_[leg] = size_;
-        model->size_t_6[leg] = size_t_6;
+        model->size_t_[leg] = size_t_;
         model->uu_3_t[leg] = uu_3_t;
         total_pus += pus_link3_mass;
         total_pus_x += h_star_t_4;
         total_pus_y += h_star_t_5;
         total_pus_z += h_star_t_6;
-        total_pus_xx += J_star_t_11;
-        total_pus_xy += J_star_t_12;
-        total_pus_xz += J_star_t_13;
-        total_pus_yy += J_star_t_14;
-        total_pus_yz += J_star_t_15;
-        total_pus_zz += J_star_t_16;
+        total_pus_xx += J_star_t_15;
+        total_pus_xy += J_star_t_16;
+        total_pus_xz += J_star_t_17;
+        total_pus_yy += J_star_t_18;
+        total_pus_yz += J_star_t_19;
+        total_pus_zz += J_star_t_20;
+        total_pus_x_2 += pus_platform_point_x;
+        total_pus_y_2 += pus_platform_point_y;
+        total_pus_z_2 += pus_platform_point_z;
+        total_pus_2 += size_t_;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_pus;
@@ -583,16 +636,22 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_pus_yy;
     const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_pus_yz;
     const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_pus_zz;
-    const real J_star_t_17 = J_star_xx - J_star_yy;
-    const real J_star_t_18 = R(0.5)*J_star_t_17;
-    const real J_star_t_19 = J_star_xx - J_star_zz;
-    const real J_star_t_20 = R(0.5)*J_star_t_19;
+    const real J_star_t_21 = J_star_xx - J_star_yy;
+    const real J_star_t_22 = R(0.5)*J_star_t_21;
+    const real J_star_t_23 = J_star_xx - J_star_zz;
+    const real J_star_t_24 = R(0.5)*J_star_t_23;
     /* (M4) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    model->J_star_t_18 = J_star_t_18;
-    model->J_star_t_20 = J_star_t_20;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.16666666666666666)*total_pus_x_2;
+    const real b_c_y = R(0.16666666666666666)*total_pus_y_2;
+    const real b_c_z = R(0.16666666666666666)*total_pus_z_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = spread_t*root(total_pus_2);
+    model->J_star_t_22 = J_star_t_22;
+    model->J_star_t_24 = J_star_t_24;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -602,9 +661,13 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return HEXAGLIDE_OK;
 }
@@ -614,6 +677,9 @@ int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model)
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -623,23 +689,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -647,6 +710,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -675,47 +739,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -736,7 +803,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -813,9 +880,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -850,8 +919,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -891,6 +960,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
@@ -922,8 +1014,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     for (size_t i = 0; i < 3; ++i) {
         to[i] = X[i] + part*step[i];
     }
@@ -969,8 +1061,8 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_3 = V[3*w + k];
         const real V_4 = V[4*w + k];
         const real V_5 = V[5*w + k];
-        const real J_star_t_18 = m->J_star_t_18;
-        const real J_star_t_20 = m->J_star_t_20;
+        const real J_star_t_22 = m->J_star_t_22;
+        const real J_star_t_24 = m->J_star_t_24;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -1025,12 +1117,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy;
-        const real J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
+        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -1102,7 +1194,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1170,7 +1262,7 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -1227,7 +1319,7 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
         const real w_1_t_3 = c_3*s_2;
         const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-G5) inertia tensor of link 3 about the connection point */
+        /* (pus-G6) inertia tensor of link 3 about the connection point */
         const real _y = J_3_xy*s_3 + J_3_yz*c_3;
         /* (pus-V5) reciprocal vector 2 */
         const real inv_v_2_t = 1/v_2_t;
@@ -1446,7 +1538,7 @@ INLINE void dynamics_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         o->entry[4][k] = H_a_1_y;
         o->entry[5][k] = H_a_1_z;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -1656,8 +1748,8 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_18 = m->J_star_t_18;
-        const real J_star_t_20 = m->J_star_t_20;
+        const real J_star_t_22 = m->J_star_t_22;
+        const real J_star_t_24 = m->J_star_t_24;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -1697,12 +1789,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy;
-        const real J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
+        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -1736,7 +1828,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_12[k] = J_star_t_12;
         s->J_star_t_13[k] = J_star_t_13;
         s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1792,7 +1884,7 @@ INLINE void M_legs_pus(const prepared *m, size_t leg, size_t legs, const M_value
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -1849,7 +1941,7 @@ INLINE void M_legs_pus(const prepared *m, size_t leg, size_t legs, const M_value
             axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x;
         const real w_1_t_3 = c_3*s_2;
         const real inv_w_1_t_24 = 1/w_1_t_3;
-        /* (pus-G5) inertia tensor of link 3 about the connection point */
+        /* (pus-G6) inertia tensor of link 3 about the connection point */
         const real _y = J_3_xy*s_3 + J_3_yz*c_3;
         /* (pus-V5) reciprocal vector 2 */
         const real inv_v_2_t = 1/v_2_t;
@@ -1948,7 +2040,7 @@ INLINE void M_legs_pus(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_pus_yz_3 */
         o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_pus_zz_3 */
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -2227,7 +2319,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2289,7 +2381,7 @@ INLINE void Z_legs_pus(const prepared *m, size_t leg, size_t legs, const Z_value
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -2455,7 +2547,7 @@ INLINE void Z_legs_pus(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_pus_y_2 */
         o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_pus_z_2 */
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -2602,7 +2694,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2643,7 +2735,7 @@ INLINE void H_legs_pus(const prepared *m, size_t leg, size_t legs, const H_value
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -2709,7 +2801,7 @@ INLINE void H_legs_pus(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[4][k] = H_a_1_y;
         o->entry[5][k] = H_a_1_z;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(-w_1_t_3) > TOLERANCE*1);
     }
 }
@@ -2925,7 +3017,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2993,7 +3085,7 @@ INLINE void required_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -3171,7 +3263,7 @@ INLINE void required_legs_pus(const prepared *m, size_t leg, size_t legs, const 
         o->entry[4][k] = H_a_1_y;
         o->entry[5][k] = H_a_1_z;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -3314,7 +3406,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3355,7 +3447,7 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t leg, size_t le
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -3390,7 +3482,7 @@ INLINE void inverse_kinematics_legs_pus(const prepared *m, size_t leg, size_t le
         o->entry[1][k] = q_2;
         o->entry[2][k] = q_3;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_);
     }
 }
 
@@ -3516,7 +3608,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3565,7 +3657,7 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t leg, size_t legs, con
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -3634,7 +3726,7 @@ INLINE void joint_rates_legs_pus(const prepared *m, size_t leg, size_t legs, con
         o->entry[1][k] = qd_2;
         o->entry[2][k] = qd_3;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -3785,7 +3877,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3841,7 +3933,7 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t leg, size_t l
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -3945,7 +4037,7 @@ INLINE void joint_accelerations_legs_pus(const prepared *m, size_t leg, size_t l
         o->entry[1][k] = -qdd_2;
         o->entry[2][k] = -qdd_3;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -4097,7 +4189,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4166,7 +4258,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t leg, size_t legs, const legs
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -4334,7 +4426,7 @@ INLINE void legs_legs_pus(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[4][k] = -w_1_t_5;
         o->entry[5][k] = -w_1_t_6;
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) +
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
             UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
             TOLERANCE*1);
     }
@@ -4446,7 +4538,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_3[k] = potential_t_3;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4500,7 +4592,7 @@ INLINE void potential_legs_pus(const prepared *m, size_t leg, size_t legs, const
         const real pus_platform_point_x = m->pus_platform_point_x[i];
         const real pus_platform_point_y = m->pus_platform_point_y[i];
         const real pus_platform_point_z = m->pus_platform_point_z[i];
-        const real size_t_6 = m->size_t_6[i];
+        const real size_t_ = m->size_t_[i];
         const real uu_3_t = m->uu_3_t[i];
         /* (pus-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
@@ -4542,7 +4634,7 @@ INLINE void potential_legs_pus(const prepared *m, size_t leg, size_t legs, const
             g_r0_z*(h_1_z + potential_t_2 + c_3*h_3_z + h_3_x*s_3);
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_4 : potential_t_4;  /* total_pus */
         o->unreachable[k] = UNLESS(disc_1 >= 0);
-        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_);
     }
 }
 
@@ -4594,6 +4686,265 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 439 mul, 276 add, 12 div, 19 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[8][8], unreachable[8], singular[8];
+} condition_results_pus;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_pus(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_pus *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real inv_size = m->inv_size[i];
+        const real inv_size_t = m->inv_size_t[i];
+        const real inv_uu_3_t = m->inv_uu_3_t[i];
+        const real pus_base_frame_xx = m->pus_base_frame_xx[i];
+        const real pus_base_frame_xy = m->pus_base_frame_xy[i];
+        const real pus_base_frame_xz = m->pus_base_frame_xz[i];
+        const real pus_base_frame_yx = m->pus_base_frame_yx[i];
+        const real pus_base_frame_yy = m->pus_base_frame_yy[i];
+        const real pus_base_frame_yz = m->pus_base_frame_yz[i];
+        const real pus_base_frame_zx = m->pus_base_frame_zx[i];
+        const real pus_base_frame_zy = m->pus_base_frame_zy[i];
+        const real pus_base_frame_zz = m->pus_base_frame_zz[i];
+        const real pus_base_point_x = m->pus_base_point_x[i];
+        const real pus_base_point_y = m->pus_base_point_y[i];
+        const real pus_base_point_z = m->pus_base_point_z[i];
+        const real pus_platform_joint_offset_x = m->pus_platform_joint_offset_x[i];
+        const real pus_platform_point_x = m->pus_platform_point_x[i];
+        const real pus_platform_point_y = m->pus_platform_point_y[i];
+        const real pus_platform_point_z = m->pus_platform_point_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_ = m->size_t_[i];
+        const real uu_3_t = m->uu_3_t[i];
+        /* (pus-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*pus_platform_point_x + R_xy*pus_platform_point_y +
+            R_xz*pus_platform_point_z;
+        const real q_in_base_y = R_yx*pus_platform_point_x + R_yy*pus_platform_point_y +
+            R_yz*pus_platform_point_z;
+        const real q_in_base_z = R_zx*pus_platform_point_x + R_zy*pus_platform_point_y +
+            R_zz*pus_platform_point_z;
+        const real S_x = q_in_base_x + t_x - pus_base_point_x;
+        const real S_y = q_in_base_y + t_y - pus_base_point_y;
+        const real S_z = q_in_base_z + t_z - pus_base_point_z;
+        /* (pus-K2) component along axis 1 */
+        const real px_1 = S_x*pus_base_frame_xx + S_y*pus_base_frame_yx + S_z*pus_base_frame_zx;
+        /* (pus-K3) discriminant of the distance equation */
+        const real disc_1_t = S_x*S_x + S_y*S_y + S_z*S_z;
+        const real disc_1 = px_1*px_1 + uu_3_t - disc_1_t;
+        /* (pus-K4) displacement of joint 1 */
+        const real q_1_t = branch_1*root(disc_1);
+        /* (pus-K1) from the base point to the connection point */
+        const real S_r0_y = S_x*pus_base_frame_xy + S_y*pus_base_frame_yy + S_z*pus_base_frame_zy;
+        /* (pus-K9) squared amplitude */
+        const real rho2_2 = S_r0_y*S_r0_y + q_1_t*q_1_t;
+        /* (pus-K11) root, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (pus-K17) cosine of the angle of joint 3 from its reference direction */
+        const real c_3 = inv_uu_3_t*pus_platform_joint_offset_x*root_2;
+        /* (pus-K18) sine of the angle of joint 3 from its reference direction */
+        const real s_3 = inv_uu_3_t*pus_platform_joint_offset_x*(S_x*pus_base_frame_xz +
+            S_y*pus_base_frame_yz + S_z*pus_base_frame_zz);
+        /* (pus-V2) velocity of the connection point per rate of joint 2 */
+        const real v_2_t = c_3*pus_platform_joint_offset_x;
+        /* (pus-K12) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rho2_2 = 1/rho2_2;
+        const real c_2 = S_r0_y*inv_rho2_2*root_2;
+        /* (pus-K13) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_rho2_2*q_1_t*root_2;
+        /* (pus-V4) reciprocal vector 1 */
+        const real axis_z_pus_axes3_in_base_x = -c_2*pus_base_frame_xx - pus_base_frame_xy*s_2;
+        const real axis_z_pus_axes3_in_base_y = -c_2*pus_base_frame_yx - pus_base_frame_yy*s_2;
+        const real axis_z_pus_axes3_in_base_z = -c_2*pus_base_frame_zx - pus_base_frame_zy*s_2;
+        const real w_1_t = s_2*s_3;
+        const real w_1_t_2 = c_2*s_3;
+        const real axis_y_pus_axes3_in_base_x = pus_base_frame_xy*w_1_t_2 - c_3*pus_base_frame_xz
+            - pus_base_frame_xx*w_1_t;
+        const real axis_y_pus_axes3_in_base_y = pus_base_frame_yy*w_1_t_2 - c_3*pus_base_frame_yz
+            - pus_base_frame_yx*w_1_t;
+        const real axis_y_pus_axes3_in_base_z = pus_base_frame_zy*w_1_t_2 - c_3*pus_base_frame_zz
+            - pus_base_frame_zx*w_1_t;
+        const real w_1_t_3 = c_3*s_2;
+        const real inv_w_1_t_24 = 1/w_1_t_3;
+        const real w_1_t_4 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_z -
+            axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_y);
+        const real w_1_t_5 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_z*axis_z_pus_axes3_in_base_x -
+            axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_z);
+        const real w_1_t_6 = inv_w_1_t_24*(axis_y_pus_axes3_in_base_x*axis_z_pus_axes3_in_base_y -
+            axis_y_pus_axes3_in_base_y*axis_z_pus_axes3_in_base_x);
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_1_x = q_in_base_z*w_1_t_5 - q_in_base_y*w_1_t_6;
+        const real H_a_1_y = q_in_base_x*w_1_t_6 - q_in_base_z*w_1_t_4;
+        const real H_a_1_z = q_in_base_y*w_1_t_4 - q_in_base_x*w_1_t_5;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - pus_platform_point_x;
+        const real spread_t_3 = b_c_y - pus_platform_point_y;
+        const real spread_t_4 = b_c_z - pus_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (pus-K9) squared amplitude */
+        const real pivot_size = magnitude(rho2_2);
+        /* (pus-V4) reciprocal vector 1 */
+        const real pivot_size_2 = magnitude(v_2_t);
+        const real pivot_size_3 = magnitude(w_1_t_3);
+        /* (pus-N30) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(lesser(pivot_size_3, inv_size*pivot_size_2),
+            root(inv_size_t*pivot_size));
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_pus */
+        o->entry[0][k] = -w_1_t_4;
+        o->entry[1][k] = -w_1_t_5;
+        o->entry[2][k] = -w_1_t_6;
+        o->entry[3][k] = H_a_1_x;
+        o->entry[4][k] = H_a_1_y;
+        o->entry[5][k] = H_a_1_z;
+        o->entry[6][k] = least_pivots;
+        o->entry[7][k] = disc_1;
+        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_) +
+            UNLESS(magnitude(v_2_t) > TOLERANCE*size_) + UNLESS(magnitude(-w_1_t_3) >
+            TOLERANCE*1);
+    }
+}
+
+INLINE void condition_place_pus(size_t w, const condition_results_pus *o, size_t leg, size_t
+    first, real *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(6 + leg)*w + k] = o->entry[1][first + k];
+        H[(12 + leg)*w + k] = o->entry[2][first + k];
+        H[(18 + leg)*w + k] = o->entry[3][first + k];
+        H[(24 + leg)*w + k] = o->entry[4][first + k];
+        H[(30 + leg)*w + k] = o->entry[5][first + k];
+        pivots[(leg)*w + k] = o->entry[6][first + k];
+        reach[(leg)*w + k] = o->entry[7][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_pus = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_pus);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_pus results_pus;
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_pus(m, 0, 1, s, 0, 6, 0, &results_pus);
+        for (size_t leg = 0; leg < 6; ++leg) {
+            condition_place_pus(w, &results_pus, leg, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_pus.sum[n], 6);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_pus.sum, 0, sizeof results_pus.sum);
+        for (size_t leg = 0; leg < 6; ++leg) {
+            condition_legs_pus(m, leg, 0, s, 1, w, 1, &results_pus);
+            condition_place_pus(w, &results_pus, leg, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_pus.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -4673,12 +5024,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int hexaglide_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 6) ? HEXAGLIDE_OK : HEXAGLIDE_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 6, 1, &code, completed);
     return code;
 }
@@ -4729,12 +5081,16 @@ int hexaglide_energy(const prepared *m, const real *X, const real *V, real *kine
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 3, 6, 9, 12, 15};
     real q[18];
     int code = hexaglide_inverse_kinematics(m, X, q);
+    if (code != HEXAGLIDE_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 6; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -4747,8 +5103,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[36];
     int code = hexaglide_H(m, X, H);
-    fill_rows(6, H, gap, a);
     if (code == HEXAGLIDE_OK) {
+        fill_rows(6, H, gap, a);
         least_squares(6, 6, a, step);
     }
     return code;
@@ -4757,7 +5113,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int hexaglide_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 6 };
-    real found[7], gap[GAPS], trial[7], next[GAPS], step[6];
+    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 6) ? mismatch(m, q_actuated, X0, gap, &size)
         : HEXAGLIDE_INVALID;
@@ -4786,16 +5142,115 @@ int hexaglide_forward_kinematics(const prepared *m, const real *q_actuated, cons
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    static const size_t moments[] = {3, 4, 5};
+    real lengths[2], reach[6];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(7, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 6; ++j) {
+            H[moments[i]*6 + j] /= length;
+        }
+    }
+    check(36, 1, H, t->overflow);
+    check(6, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int hexaglide_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[36], a[36], found[6], pivots[6];
+    const int code = matrices(m, X, H, pivots);
+    if (code != HEXAGLIDE_OK) {
+        refuse(6, sigma);
+        refuse(6, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 6; ++j) {
+            a[i*6 + j] = H[i*6 + j];
+        }
+    }
+    singular_values(6, 6, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int hexaglide_rotation(const real *X, real *R)
 {
-    const real *const p = X + 3;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 7) && n > 0 && is_finite(n) ? HEXAGLIDE_OK : HEXAGLIDE_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 3, p);
+    const int code = all_finite(X, 7) && all_finite(p, 4) ? HEXAGLIDE_OK : HEXAGLIDE_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -4804,11 +5259,8 @@ int hexaglide_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[7] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[3 + i] = p[i]/n;
-    }
+    unit(p, found + 3);
     memcpy(found, t, 3*sizeof *t);
     const int code = all_finite(found, 7) ? HEXAGLIDE_OK : HEXAGLIDE_INVALID;
     deliver(found, 7, 1, &code, X);
@@ -4831,6 +5283,10 @@ int hexaglide_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(7, X);
+        return HEXAGLIDE_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -4876,6 +5332,11 @@ size_t hexaglide_M_batch(const hexaglide_model *model, size_t n, const hexaglide
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_M(model, X + 7*(i + k), M + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4900,6 +5361,11 @@ size_t hexaglide_Z_batch(const hexaglide_model *model, size_t n, const hexaglide
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4923,6 +5389,11 @@ size_t hexaglide_H_batch(const hexaglide_model *model, size_t n, const hexaglide
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 7*i, H + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_H(model, X + 7*(i + k), H + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4947,6 +5418,12 @@ size_t hexaglide_dynamics_batch(const hexaglide_model *model, size_t n, const he
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i + k),
+                    H + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4971,6 +5448,11 @@ size_t hexaglide_inverse_kinematics_batch(const hexaglide_model *model, size_t n
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_inverse_kinematics(model, X + 7*(i + k), q + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4995,6 +5477,11 @@ size_t hexaglide_joint_rates_batch(const hexaglide_model *model, size_t n, const
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5020,6 +5507,12 @@ size_t hexaglide_joint_accelerations_batch(const hexaglide_model *model, size_t 
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
+                    accelerations + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5047,6 +5540,12 @@ size_t hexaglide_inverse_dynamics_batch(const hexaglide_model *model, size_t n, 
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
             6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench ?
+                    wrench + 6*(i + k) : NULL, tau + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5074,6 +5573,12 @@ size_t hexaglide_forward_dynamics_batch(const hexaglide_model *model, size_t n, 
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 6*i, wrench ? wrench + 6*i : NULL, A +
             6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAGLIDE_OK) {
+                codes[k] = hexaglide_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 6*(i + k), wrench
+                    ? wrench + 6*(i + k) : NULL, A + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5085,13 +5590,13 @@ size_t hexaglide_forward_dynamics_batch(const hexaglide_model *model, size_t n, 
 }
 
 size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
-    *completed, int *status)
+    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
+    *wrench, hexaglide_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = hexaglide_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, completed +
-            6*i);
+        const int code = hexaglide_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench
+            + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5127,6 +5632,17 @@ size_t hexaglide_forward_kinematics_batch(const hexaglide_model *model, size_t n
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = hexaglide_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t hexaglide_condition_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
+    hexaglide_real *sigma, hexaglide_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexaglide_condition(model, X + 7*i, sigma + 6*i, legs + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

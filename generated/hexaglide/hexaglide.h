@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  hexaglide_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask hexaglide_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so hexaglide.c refuses them unless HEXAGLIDE_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as HEXAGLIDE_OK.
  */
 #ifndef HEXAGLIDE_H_INCLUDED
 #define HEXAGLIDE_H_INCLUDED
@@ -85,29 +94,32 @@ typedef struct {
 
 /* What depends on the parameters alone; set by hexaglide_prepare, then only read. */
 typedef struct {
-    hexaglide_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    hexaglide_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type pus */
     hexaglide_real J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yz[6], J_3_zz[6], Sigma_3_xx[6],
             Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], branch_1[6], branch_2[6], d_Gamma_3_t[6],
             d_Gamma_3_y[6], d_c_yy[6], d_phi_3_t[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6],
             h_1_y[6], h_1_z[6], h_3_x[6], h_3_y[6], h_3_z[6], inv_pus_platform_joint_offset_x[6],
-            inv_uu_3_t[6], potential_t[6], potential_t_2[6], pus_base_frame_xx[6],
-            pus_base_frame_xy[6], pus_base_frame_xz[6], pus_base_frame_yx[6], pus_base_frame_yy[6],
-            pus_base_frame_yz[6], pus_base_frame_zx[6], pus_base_frame_zy[6], pus_base_frame_zz[6],
-            pus_base_point_x[6], pus_base_point_y[6], pus_base_point_z[6], pus_link1_mass[6],
-            pus_link3_mass[6], pus_platform_joint_offset_x[6], pus_platform_point_x[6],
-            pus_platform_point_y[6], pus_platform_point_z[6], size_[6], size_t_6[6], uu_3_t[6];
+            inv_size[6], inv_size_t[6], inv_uu_3_t[6], potential_t[6], potential_t_2[6],
+            pus_base_frame_xx[6], pus_base_frame_xy[6], pus_base_frame_xz[6], pus_base_frame_yx[6],
+            pus_base_frame_yy[6], pus_base_frame_yz[6], pus_base_frame_zx[6], pus_base_frame_zy[6],
+            pus_base_frame_zz[6], pus_base_point_x[6], pus_base_point_y[6], pus_base_point_z[6],
+            pus_link1_mass[6], pus_link3_mass[6], pus_platform_joint_offset_x[6],
+            pus_platform_point_x[6], pus_platform_point_y[6], pus_platform_point_z[6], size_[6],
+            size_t_[6], uu_3_t[6];
 } hexaglide_model;
 
 extern const hexaglide_params hexaglide_default_params;
 extern const hexaglide_real hexaglide_HOME_X[HEXAGLIDE_NQ];
 extern const hexaglide_real hexaglide_HOME_Q[HEXAGLIDE_NJ];
 
-/* Prepare a model.  HEXAGLIDE_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  HEXAGLIDE_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexaglide_prepare(const hexaglide_params *params, hexaglide_model *model);
 
 /* Inertia matrix M. 1053 mul, 759 add, 18 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -175,13 +187,14 @@ size_t hexaglide_forward_dynamics_batch(const hexaglide_model *model, size_t n, 
     hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *tau, const hexaglide_real
     *wrench, hexaglide_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hexaglide_complete_acceleration(const hexaglide_model *model, const hexaglide_real *X, const
-    hexaglide_real *V, const hexaglide_real *A, hexaglide_real *completed);
+    hexaglide_real *V, const hexaglide_real *A, const hexaglide_real *wrench, hexaglide_real
+    *completed);
 size_t hexaglide_complete_acceleration_batch(const hexaglide_model *model, size_t n, const
-    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, hexaglide_real
-    *completed, int *status);
+    hexaglide_real *X, const hexaglide_real *V, const hexaglide_real *A, const hexaglide_real
+    *wrench, hexaglide_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 1092 mul, 798 add, 18 div,
    12 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -207,11 +220,21 @@ int hexaglide_forward_kinematics(const hexaglide_model *model, const hexaglide_r
 size_t hexaglide_forward_kinematics_batch(const hexaglide_model *model, size_t n, const
     hexaglide_real *q_actuated, const hexaglide_real *X0, hexaglide_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 439 mul, 276 add, 12 div, 19 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (6). */
+int hexaglide_condition(const hexaglide_model *model, const hexaglide_real *X, hexaglide_real
+    *sigma, hexaglide_real *legs);
+size_t hexaglide_condition_batch(const hexaglide_model *model, size_t n, const hexaglide_real *X,
+    hexaglide_real *sigma, hexaglide_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int hexaglide_rotation(const hexaglide_real *X, hexaglide_real *R);
 size_t hexaglide_rotation_batch(size_t n, const hexaglide_real *X, hexaglide_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int hexaglide_pose(const hexaglide_real *t, const hexaglide_real *R, hexaglide_real *X);
 size_t hexaglide_pose_batch(size_t n, const hexaglide_real *t, const hexaglide_real *R,
     hexaglide_real *X, int *status);

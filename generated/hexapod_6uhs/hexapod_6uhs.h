@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  hexapod_6uhs_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask hexapod_6uhs_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so hexapod_6uhs.c refuses them unless HEXAPOD_6UHS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as HEXAPOD_6UHS_OK.
  */
 #ifndef HEXAPOD_6UHS_H_INCLUDED
 #define HEXAPOD_6UHS_H_INCLUDED
@@ -89,30 +98,33 @@ typedef struct {
 
 /* What depends on the parameters alone; set by hexapod_6uhs_prepare, then only read. */
 typedef struct {
-    hexapod_6uhs_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    hexapod_6uhs_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type uhs */
     hexapod_6uhs_real J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6], J_3_xx[6], J_3_xy[6],
             J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], Jc_2_xx[6], Sigma_2_xx[6], Sigma_2_yy[6],
             Sigma_2_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6], b_r0_y[6],
             b_r0_z[6], branch_1[6], branch_2[6], d_G_t[6], d_phi_3_t[6], d_phi_3_t_2[6], g_r0_x[6],
             g_r0_y[6], g_r0_z[6], h_2_x[6], h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6],
-            inv_uhs_joint3_pitch[6], size_[6], size_t_6[6], uhs_base_frame_xx[6],
-            uhs_base_frame_xy[6], uhs_base_frame_xz[6], uhs_base_frame_yx[6], uhs_base_frame_yy[6],
-            uhs_base_frame_yz[6], uhs_base_frame_zx[6], uhs_base_frame_zy[6], uhs_base_frame_zz[6],
-            uhs_base_point_x[6], uhs_base_point_y[6], uhs_base_point_z[6], uhs_joint3_offset_x[6],
-            uhs_joint3_pitch[6], uhs_link2_mass[6], uhs_link3_mass[6], uhs_platform_joint_offset_x[6],
-            uhs_platform_point_x[6], uhs_platform_point_y[6], uhs_platform_point_z[6];
+            inv_size[6], inv_size_t_3[6], inv_uhs_joint3_pitch[6], size_[6], size_t_[6],
+            uhs_base_frame_xx[6], uhs_base_frame_xy[6], uhs_base_frame_xz[6], uhs_base_frame_yx[6],
+            uhs_base_frame_yy[6], uhs_base_frame_yz[6], uhs_base_frame_zx[6], uhs_base_frame_zy[6],
+            uhs_base_frame_zz[6], uhs_base_point_x[6], uhs_base_point_y[6], uhs_base_point_z[6],
+            uhs_joint3_offset_x[6], uhs_joint3_pitch[6], uhs_link2_mass[6], uhs_link3_mass[6],
+            uhs_platform_joint_offset_x[6], uhs_platform_point_x[6], uhs_platform_point_y[6],
+            uhs_platform_point_z[6];
 } hexapod_6uhs_model;
 
 extern const hexapod_6uhs_params hexapod_6uhs_default_params;
 extern const hexapod_6uhs_real hexapod_6uhs_HOME_X[HEXAPOD_6UHS_NQ];
 extern const hexapod_6uhs_real hexapod_6uhs_HOME_Q[HEXAPOD_6UHS_NJ];
 
-/* Prepare a model.  HEXAPOD_6UHS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  HEXAPOD_6UHS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6uhs_prepare(const hexapod_6uhs_params *params, hexapod_6uhs_model *model);
 
 /* Inertia matrix M. 1341 mul, 951 add, 24 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
@@ -185,13 +197,14 @@ size_t hexapod_6uhs_forward_dynamics_batch(const hexapod_6uhs_model *model, size
     hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *tau, const
     hexapod_6uhs_real *wrench, hexapod_6uhs_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hexapod_6uhs_complete_acceleration(const hexapod_6uhs_model *model, const hexapod_6uhs_real
-    *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, hexapod_6uhs_real *completed);
+    *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const hexapod_6uhs_real *wrench,
+    hexapod_6uhs_real *completed);
 size_t hexapod_6uhs_complete_acceleration_batch(const hexapod_6uhs_model *model, size_t n, const
-    hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A,
-    hexapod_6uhs_real *completed, int *status);
+    hexapod_6uhs_real *X, const hexapod_6uhs_real *V, const hexapod_6uhs_real *A, const
+    hexapod_6uhs_real *wrench, hexapod_6uhs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 1536 mul, 1152 add, 24 div,
    12 sqrt, 12 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -218,12 +231,22 @@ int hexapod_6uhs_forward_kinematics(const hexapod_6uhs_model *model, const hexap
 size_t hexapod_6uhs_forward_kinematics_batch(const hexapod_6uhs_model *model, size_t n, const
     hexapod_6uhs_real *q_actuated, const hexapod_6uhs_real *X0, hexapod_6uhs_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 301 mul, 210 add, 12 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (6). */
+int hexapod_6uhs_condition(const hexapod_6uhs_model *model, const hexapod_6uhs_real *X,
+    hexapod_6uhs_real *sigma, hexapod_6uhs_real *legs);
+size_t hexapod_6uhs_condition_batch(const hexapod_6uhs_model *model, size_t n, const
+    hexapod_6uhs_real *X, hexapod_6uhs_real *sigma, hexapod_6uhs_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int hexapod_6uhs_rotation(const hexapod_6uhs_real *X, hexapod_6uhs_real *R);
 size_t hexapod_6uhs_rotation_batch(size_t n, const hexapod_6uhs_real *X, hexapod_6uhs_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int hexapod_6uhs_pose(const hexapod_6uhs_real *t, const hexapod_6uhs_real *R, hexapod_6uhs_real
     *X);
 size_t hexapod_6uhs_pose_batch(size_t n, const hexapod_6uhs_real *t, const hexapod_6uhs_real *R,

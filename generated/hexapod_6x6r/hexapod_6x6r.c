@@ -3,6 +3,12 @@
 
 #include "hexapod_6x6r.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(HEXAPOD_6X6R_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define HEXAPOD_6X6R_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef hexapod_6x6r_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -432,58 +470,58 @@ const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ] = {R(0.15), R(0.9),
 static int acceptable(const hexapod_6x6r_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->rrrrrr_base_point[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_base_frame[0][0][0], 54);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rrrrrr_base_point[0][0], 18);
+    ok &= all_within(&p->rrrrrr_base_frame[0][0][0], 54);
     ok &= all_rotations(&p->rrrrrr_base_frame[0][0][0], 6);
-    ok &= all_finite(&p->rrrrrr_platform_point[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_joint2_offset[0][0], 18);
+    ok &= all_within(&p->rrrrrr_platform_point[0][0], 18);
+    ok &= all_within(&p->rrrrrr_joint2_offset[0][0], 18);
     ok &= all_zero(&p->rrrrrr_joint2_offset[0][0] + 1, 6, 3);
     ok &= all_zero(&p->rrrrrr_joint2_offset[0][0] + 2, 6, 3);
-    ok &= all_finite(&p->rrrrrr_joint3_offset[0][0], 18);
+    ok &= all_within(&p->rrrrrr_joint3_offset[0][0], 18);
     ok &= all_zero(&p->rrrrrr_joint3_offset[0][0] + 1, 6, 3);
     ok &= all_zero(&p->rrrrrr_joint3_offset[0][0] + 2, 6, 3);
-    ok &= all_finite(&p->rrrrrr_joint4_offset[0][0], 18);
+    ok &= all_within(&p->rrrrrr_joint4_offset[0][0], 18);
     ok &= all_zero(&p->rrrrrr_joint4_offset[0][0] + 1, 6, 3);
     ok &= all_zero(&p->rrrrrr_joint4_offset[0][0] + 2, 6, 3);
-    ok &= all_finite(&p->rrrrrr_joint5_offset[0][0], 18);
+    ok &= all_within(&p->rrrrrr_joint5_offset[0][0], 18);
     ok &= all_zero(&p->rrrrrr_joint5_offset[0][0] + 1, 6, 3);
     ok &= all_zero(&p->rrrrrr_joint5_offset[0][0] + 2, 6, 3);
-    ok &= all_finite(&p->rrrrrr_platform_joint_offset[0][0], 18);
+    ok &= all_within(&p->rrrrrr_platform_joint_offset[0][0], 18);
     ok &= all_zero(&p->rrrrrr_platform_joint_offset[0][0] + 1, 6, 3);
     ok &= all_zero(&p->rrrrrr_platform_joint_offset[0][0] + 2, 6, 3);
-    ok &= all_finite(&p->rrrrrr_platform_joint_axis_platform[0][0], 18);
+    ok &= all_within(&p->rrrrrr_platform_joint_axis_platform[0][0], 18);
     ok &= all_unit(&p->rrrrrr_platform_joint_axis_platform[0][0], 6);
-    ok &= all_finite(&p->rrrrrr_link1_mass[0], 6);
+    ok &= all_within(&p->rrrrrr_link1_mass[0], 6);
     ok &= none_negative(&p->rrrrrr_link1_mass[0], 6);
-    ok &= all_finite(&p->rrrrrr_link1_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_link1_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->rrrrrr_link1_inertia[0][0][0], 6);
-    ok &= all_finite(&p->rrrrrr_link2_mass[0], 6);
+    ok &= all_within(&p->rrrrrr_link1_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->rrrrrr_link1_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->rrrrrr_link1_inertia[0][0][0], 6);
+    ok &= all_within(&p->rrrrrr_link2_mass[0], 6);
     ok &= none_negative(&p->rrrrrr_link2_mass[0], 6);
-    ok &= all_finite(&p->rrrrrr_link2_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_link2_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->rrrrrr_link2_inertia[0][0][0], 6);
-    ok &= all_finite(&p->rrrrrr_link3_mass[0], 6);
+    ok &= all_within(&p->rrrrrr_link2_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->rrrrrr_link2_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->rrrrrr_link2_inertia[0][0][0], 6);
+    ok &= all_within(&p->rrrrrr_link3_mass[0], 6);
     ok &= none_negative(&p->rrrrrr_link3_mass[0], 6);
-    ok &= all_finite(&p->rrrrrr_link3_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_link3_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->rrrrrr_link3_inertia[0][0][0], 6);
-    ok &= all_finite(&p->rrrrrr_link4_mass[0], 6);
+    ok &= all_within(&p->rrrrrr_link3_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->rrrrrr_link3_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->rrrrrr_link3_inertia[0][0][0], 6);
+    ok &= all_within(&p->rrrrrr_link4_mass[0], 6);
     ok &= none_negative(&p->rrrrrr_link4_mass[0], 6);
-    ok &= all_finite(&p->rrrrrr_link4_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_link4_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->rrrrrr_link4_inertia[0][0][0], 6);
-    ok &= all_finite(&p->rrrrrr_link5_mass[0], 6);
+    ok &= all_within(&p->rrrrrr_link4_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->rrrrrr_link4_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->rrrrrr_link4_inertia[0][0][0], 6);
+    ok &= all_within(&p->rrrrrr_link5_mass[0], 6);
     ok &= none_negative(&p->rrrrrr_link5_mass[0], 6);
-    ok &= all_finite(&p->rrrrrr_link5_centre_of_mass[0][0], 18);
-    ok &= all_finite(&p->rrrrrr_link5_inertia[0][0][0], 54);
-    ok &= all_symmetric(&p->rrrrrr_link5_inertia[0][0][0], 6);
+    ok &= all_within(&p->rrrrrr_link5_centre_of_mass[0][0], 18);
+    ok &= all_within(&p->rrrrrr_link5_inertia[0][0][0], 54);
+    ok &= all_inertias(&p->rrrrrr_link5_inertia[0][0][0], 6);
     return ok;
 }
 
@@ -503,6 +541,10 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     real total_rrrrrr_yy = 0;
     real total_rrrrrr_yz = 0;
     real total_rrrrrr_zz = 0;
+    real total_rrrrrr_x_2 = 0;
+    real total_rrrrrr_y_2 = 0;
+    real total_rrrrrr_z_2 = 0;
+    real total_rrrrrr_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -531,9 +573,12 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     const real J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4);
     const real J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass;
     const real J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4);
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.16666666666666666)*root(6);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 6; ++leg) {
         const real rrrrrr_base_point_x = params->rrrrrr_base_point[leg][0];
         const real rrrrrr_base_point_y = params->rrrrrr_base_point[leg][1];
@@ -603,12 +648,12 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real rrrrrr_link5_inertia_yy = params->rrrrrr_link5_inertia[leg][1][1];
         const real rrrrrr_link5_inertia_yz = params->rrrrrr_link5_inertia[leg][1][2];
         const real rrrrrr_link5_inertia_zz = params->rrrrrr_link5_inertia[leg][2][2];
-        /* (rrrrrr-G3) inertia tensor of link 1 about the origin of link 1 */
+        /* (rrrrrr-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_t = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_centre_of_mass_x;
         const real J_1_t_2 = J_1_t + rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_centre_of_mass_y +
             rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_centre_of_mass_z;
         const real J_1_xx = rrrrrr_link1_inertia_xx - rrrrrr_link1_mass*(J_1_t - J_1_t_2);
-        /* (rrrrrr-G5) inertia tensor of link 2 about the origin of link 2 */
+        /* (rrrrrr-G6) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_centre_of_mass_x;
         const real J_2_t_2 = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_y;
         const real J_2_t_3 = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_centre_of_mass_z;
@@ -622,7 +667,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real J_2_yz = rrrrrr_link2_inertia_yz -
             rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass;
         const real J_2_zz = rrrrrr_link2_inertia_zz - rrrrrr_link2_mass*(J_2_t_3 - J_2_t_4);
-        /* (rrrrrr-G7) inertia tensor of link 3 about the origin of link 3 */
+        /* (rrrrrr-G8) inertia tensor of link 3 about the origin of link 3 */
         const real J_3_t = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_x;
         const real J_3_t_2 = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_y;
         const real J_3_t_3 = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_centre_of_mass_z;
@@ -636,7 +681,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real J_3_yz = rrrrrr_link3_inertia_yz -
             rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass;
         const real J_3_zz = rrrrrr_link3_inertia_zz - rrrrrr_link3_mass*(J_3_t_3 - J_3_t_4);
-        /* (rrrrrr-G9) inertia tensor of link 4 about the origin of link 4 */
+        /* (rrrrrr-G10) inertia tensor of link 4 about the origin of link 4 */
         const real J_4_t = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_x;
         const real J_4_t_2 = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_y;
         const real J_4_t_3 = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_centre_of_mass_z;
@@ -650,9 +695,9 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real J_4_yz = rrrrrr_link4_inertia_yz -
             rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass;
         const real J_4_zz = rrrrrr_link4_inertia_zz - rrrrrr_link4_mass*(J_4_t_3 - J_4_t_4);
-        /* (rrrrrr-G10) connection point to the centre of mass of link 5 */
+        /* (rrrrrr-G11) connection point to the centre of mass of link 5 */
         const real rho_tip_5_x = rrrrrr_link5_centre_of_mass_x - rrrrrr_platform_joint_offset_x;
-        /* (rrrrrr-G12) inertia tensor of link 5 about the connection point */
+        /* (rrrrrr-G13) inertia tensor of link 5 about the connection point */
         const real J_5_t = rho_tip_5_x*rho_tip_5_x;
         const real J_5_t_2 = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_y;
         const real J_5_t_3 = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_centre_of_mass_z;
@@ -668,7 +713,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real J_5_zz = rrrrrr_link5_inertia_zz - rrrrrr_link5_mass*(J_5_t_3 - J_5_t_4);
         /* (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4 */
         const real Jc_4_xx = J_4_zz + J_5_zz;
-        /* (rrrrrr-G8) first moment of link 4 about the origin of link 4 */
+        /* (rrrrrr-G9) first moment of link 4 about the origin of link 4 */
         const real h_4_x = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_mass;
         const real h_4_y = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass;
         const real h_4_z = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass;
@@ -676,7 +721,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real Jc_3_t = R(0.5)*rrrrrr_link4_mass;
         const real Jc_3_t_2 = rrrrrr_joint4_offset_x*(h_4_x + Jc_3_t*rrrrrr_joint4_offset_x);
         const real Jc_3_t_3 = 2*Jc_3_t_2;
-        /* (rrrrrr-G6) first moment of link 3 about the origin of link 3 */
+        /* (rrrrrr-G7) first moment of link 3 about the origin of link 3 */
         const real h_3_x = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_mass;
         const real h_3_y = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass;
         const real h_3_z = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass;
@@ -684,40 +729,38 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real hc_3_x = h_3_x + h_4_x + rrrrrr_joint4_offset_x*rrrrrr_link4_mass;
         /* (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2 */
         const real Jc_2_t = rrrrrr_joint3_offset_x*(Jc_3_t + R(0.5)*rrrrrr_link3_mass);
-        /* (rrrrrr-G4) first moment of link 2 about the origin of link 2 */
+        /* (rrrrrr-G5) first moment of link 2 about the origin of link 2 */
         const real h_2_x = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_mass;
         const real h_2_y = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass;
         const real h_2_z = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass;
-        /* (rrrrrr-G11) first moment of link 5 about the connection point */
+        /* (rrrrrr-G12) first moment of link 5 about the connection point */
         const real h_5_x = rho_tip_5_x*rrrrrr_link5_mass;
         const real h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass;
         const real h_5_z = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass;
-        /* (rrrrrr-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = rrrrrr_base_point_x*rrrrrr_base_point_x +
-            rrrrrr_base_point_y*rrrrrr_base_point_y + rrrrrr_base_point_z*rrrrrr_base_point_z;
-        const real size_t_2 = rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x;
-        const real size_t_3 = rrrrrr_platform_point_x*rrrrrr_platform_point_x;
-        const real size_t_4 = rrrrrr_platform_point_y*rrrrrr_platform_point_y;
-        const real size_t_5 = rrrrrr_platform_point_z*rrrrrr_platform_point_z;
-        const real size_t_6 = size_t_3 + size_t_4 + size_t_5;
-        const real size_ = root(rrrrrr_joint2_offset_x*rrrrrr_joint2_offset_x +
-            rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x +
-            rrrrrr_joint4_offset_x*rrrrrr_joint4_offset_x +
-            rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x + size_t_ + size_t_2 + size_t_6);
+        /* (rrrrrr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_t_ = rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x;
+        const real size_t_2 = R(6.98155500249e-07) + rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x
+            + rrrrrr_joint4_offset_x*rrrrrr_joint4_offset_x +
+            rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x + size_t_;
+        const real size_ = root(size_t_2);
         /* (L2) first moment about the platform origin */
         const real h_star_t_4 = rrrrrr_link5_mass*rrrrrr_platform_point_x;
         const real h_star_t_5 = rrrrrr_link5_mass*rrrrrr_platform_point_y;
         const real h_star_t_6 = rrrrrr_link5_mass*rrrrrr_platform_point_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = rrrrrr_link5_mass*(size_t_3 - size_t_6);
-        const real J_star_t_12 =
+        const real J_star_t_11 = rrrrrr_platform_point_x*rrrrrr_platform_point_x;
+        const real J_star_t_12 = rrrrrr_platform_point_y*rrrrrr_platform_point_y;
+        const real J_star_t_13 = rrrrrr_platform_point_z*rrrrrr_platform_point_z;
+        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
+        const real J_star_t_15 = rrrrrr_link5_mass*(J_star_t_11 - J_star_t_14);
+        const real J_star_t_16 =
             rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_y;
-        const real J_star_t_13 =
+        const real J_star_t_17 =
             rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_z;
-        const real J_star_t_14 = rrrrrr_link5_mass*(size_t_4 - size_t_6);
-        const real J_star_t_15 =
+        const real J_star_t_18 = rrrrrr_link5_mass*(J_star_t_12 - J_star_t_14);
+        const real J_star_t_19 =
             rrrrrr_link5_mass*rrrrrr_platform_point_y*rrrrrr_platform_point_z;
-        const real J_star_t_16 = rrrrrr_link5_mass*(size_t_5 - size_t_6);
+        const real J_star_t_20 = rrrrrr_link5_mass*(J_star_t_13 - J_star_t_14);
         /* (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link
            4, less gravity */
         const real g_r0_x = gravity_x*rrrrrr_base_frame_xy + gravity_y*rrrrrr_base_frame_yy +
@@ -750,7 +793,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         const real Sigma_2_xx = trace_J_2 - J_2_xx;
         const real Sigma_2_yy = trace_J_2 - J_2_yy;
         const real Sigma_2_zz = trace_J_2 - J_2_zz;
-        /* (rrrrrr-G2) first moment of link 1 about the origin of link 1 */
+        /* (rrrrrr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_x = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_mass;
         const real h_1_y = rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_mass;
         const real h_1_z = rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_mass;
@@ -761,6 +804,8 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
             rrrrrr_base_frame_yz*rrrrrr_base_point_y + rrrrrr_base_frame_zz*rrrrrr_base_point_z;
         const real b_r0_z = rrrrrr_base_frame_xx*rrrrrr_base_point_x +
             rrrrrr_base_frame_yx*rrrrrr_base_point_y + rrrrrr_base_frame_zx*rrrrrr_base_point_z;
+        /* (rrrrrr-V13) force part of reciprocal wrench 1 */
+        const real inv_size = 1/size_;
         model->J_1_xx[leg] = J_1_xx;
         model->J_2_xx[leg] = J_2_xx;
         model->J_2_xy[leg] = J_2_xy;
@@ -823,6 +868,7 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         model->h_5_y[leg] = h_5_y;
         model->h_5_z[leg] = h_5_z;
         model->hc_3_x[leg] = hc_3_x;
+        model->inv_size[leg] = inv_size;
         model->rrrrrr_base_frame_xx[leg] = rrrrrr_base_frame_xx;
         model->rrrrrr_base_frame_xy[leg] = rrrrrr_base_frame_xy;
         model->rrrrrr_base_frame_xz[leg] = rrrrrr_base_frame_xz;
@@ -852,17 +898,21 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
         model->rrrrrr_platform_point_y[leg] = rrrrrr_platform_point_y;
         model->rrrrrr_platform_point_z[leg] = rrrrrr_platform_point_z;
         model->size_[leg] = size_;
-        model->size_t_2[leg] = size_t_2;
+        model->size_t_[leg] = size_t_;
         total_rrrrrr += rrrrrr_link5_mass;
         total_rrrrrr_x += h_star_t_4;
         total_rrrrrr_y += h_star_t_5;
         total_rrrrrr_z += h_star_t_6;
-        total_rrrrrr_xx += J_star_t_11;
-        total_rrrrrr_xy += J_star_t_12;
-        total_rrrrrr_xz += J_star_t_13;
-        total_rrrrrr_yy += J_star_t_14;
-        total_rrrrrr_yz += J_star_t_15;
-        total_rrrrrr_zz += J_star_t_16;
+        total_rrrrrr_xx += J_star_t_15;
+        total_rrrrrr_xy += J_star_t_16;
+        total_rrrrrr_xz += J_star_t_17;
+        total_rrrrrr_yy += J_star_t_18;
+        total_rrrrrr_yz += J_star_t_19;
+        total_rrrrrr_zz += J_star_t_20;
+        total_rrrrrr_x_2 += rrrrrr_platform_point_x;
+        total_rrrrrr_y_2 += rrrrrr_platform_point_y;
+        total_rrrrrr_z_2 += rrrrrr_platform_point_z;
+        total_rrrrrr_2 += size_t_2;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rrrrrr;
@@ -877,16 +927,22 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrrr_yy;
     const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrrr_yz;
     const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrrr_zz;
-    const real J_star_t_17 = J_star_xx - J_star_yy;
-    const real J_star_t_18 = R(0.5)*J_star_t_17;
-    const real J_star_t_19 = J_star_xx - J_star_zz;
-    const real J_star_t_20 = R(0.5)*J_star_t_19;
+    const real J_star_t_21 = J_star_xx - J_star_yy;
+    const real J_star_t_22 = R(0.5)*J_star_t_21;
+    const real J_star_t_23 = J_star_xx - J_star_zz;
+    const real J_star_t_24 = R(0.5)*J_star_t_23;
     /* (M4) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    model->J_star_t_18 = J_star_t_18;
-    model->J_star_t_20 = J_star_t_20;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.16666666666666666)*total_rrrrrr_x_2;
+    const real b_c_y = R(0.16666666666666666)*total_rrrrrr_y_2;
+    const real b_c_z = R(0.16666666666666666)*total_rrrrrr_z_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = spread_t*root(total_rrrrrr_2);
+    model->J_star_t_22 = J_star_t_22;
+    model->J_star_t_24 = J_star_t_24;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -896,9 +952,13 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return HEXAPOD_6X6R_OK;
 }
@@ -908,6 +968,9 @@ int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -917,23 +980,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -941,6 +1001,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -969,47 +1030,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -1030,7 +1094,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -1107,9 +1171,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -1144,8 +1210,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -1185,6 +1251,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
@@ -1216,8 +1305,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     for (size_t i = 0; i < 3; ++i) {
         to[i] = X[i] + part*step[i];
     }
@@ -1288,7 +1377,7 @@ INLINE void closure_rrrrrr_before(size_t w, const real *X, closure_rrrrrr_values
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1590,11 +1679,45 @@ INLINE real newton_step(size_t legs, size_t rows, size_t n, const real *gap, con
     return singular > 0 || !all_finite(step, legs*n) ? R(NAN) : largest(step, legs*n);
 }
 
+/* Sign of the determinant of the rows which[n] of a Jacobian with n columns; 0: it is zero, or
+   not a number.  It changes only where a leg is singular, and tells assembly branches apart. */
+static int side(size_t n, const size_t *which, const real *jacobian)
+{
+    real a[BIG*BIG];
+    int sign = 1;
+    for (size_t i = 0; i < n*n; ++i) {
+        a[i] = jacobian[which[i/n]*n + i%n];
+    }
+    for (size_t p = 0; p < n; ++p) {
+        size_t best = p;
+        for (size_t i = p + 1; i < n; ++i) {
+            best = magnitude(a[i*n + p]) > magnitude(a[best*n + p]) ? i : best;
+        }
+        sign = best == p ? sign : -sign;
+        for (size_t j = p; j < n; ++j) {
+            const real moved = a[best*n + j];
+            a[best*n + j] = a[p*n + j];
+            a[p*n + j] = moved;
+        }
+        const real pivot = a[p*n + p];
+        if (!(magnitude(pivot) > 0)) {
+            return 0;
+        }
+        sign = pivot > 0 ? sign : -sign;
+        for (size_t i = p + 1; i < n; ++i) {
+            subtract(n - p, a[i*n + p]/pivot, a + p*n + p, a + i*n + p);
+        }
+    }
+    return sign;
+}
+
 /* Close the 6 legs of type rrrrrr from the guess in q, by at most 60 steps of at most 0.5;
-   returns whether the iteration converged. */
+   returns whether the iteration converged on home's branch. */
 static int close_rrrrrr(const prepared *m, const real *X, real *q)
 {
     static const size_t places[] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 28, 29};
+    static const size_t rows[] = {0, 1, 2, 3, 4};
+    static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
     enum { LEGS = 6, ROWS = 5, N = 5 };
     real gap_rrrrrr[LEGS*ROWS], jacobian_rrrrrr[LEGS*ROWS*N], step[LEGS*N], size = 1;
     for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
@@ -1611,6 +1734,11 @@ static int close_rrrrrr(const prepared *m, const real *X, real *q)
         size = newton_step(LEGS, ROWS, N, gap_rrrrrr, jacobian_rrrrrr, step);
         for (size_t i = 0; i < LEGS*N; ++i) {
             q[places[i]] += size > R(0.5) ? R(0.5)/size*step[i] : step[i];
+        }
+    }
+    for (size_t leg = 0; leg < LEGS && size <= STEADY; ++leg) {
+        if (side(N, rows, jacobian_rrrrrr + leg*ROWS*N) != home[leg]) {
+            return 0;
         }
     }
     return size <= STEADY;
@@ -1672,8 +1800,8 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_3 = V[3*w + k];
         const real V_4 = V[4*w + k];
         const real V_5 = V[5*w + k];
-        const real J_star_t_18 = m->J_star_t_18;
-        const real J_star_t_20 = m->J_star_t_20;
+        const real J_star_t_22 = m->J_star_t_22;
+        const real J_star_t_24 = m->J_star_t_24;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -1725,12 +1853,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy;
-        const real J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
+        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -1799,7 +1927,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1906,7 +2034,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -2039,7 +2167,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real axis_x_rrrrrr_axes5_z =
             axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
             axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x;
-        /* (rrrrrr-G12) inertia tensor of link 5 about the connection point */
+        /* (rrrrrr-G13) inertia tensor of link 5 about the connection point */
         const real J_5_t = J_5_xy*s_5;
         const real _x = -J_5_t - J_5_xx*c_5_t;
         const real J_5_t_2 = J_5_xy*c_5_t;
@@ -2058,7 +2186,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4;
         const real _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4;
         const real _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t;
-        /* (rrrrrr-G8) first moment of link 4 about the origin of link 4 */
+        /* (rrrrrr-G9) first moment of link 4 about the origin of link 4 */
         const real h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z;
         const real h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4;
         /* (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3 */
@@ -2151,7 +2279,7 @@ INLINE void dynamics_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -3420,8 +3548,8 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_18 = m->J_star_t_18;
-        const real J_star_t_20 = m->J_star_t_20;
+        const real J_star_t_22 = m->J_star_t_22;
+        const real J_star_t_24 = m->J_star_t_24;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -3458,12 +3586,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy;
-        const real J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
+        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -3494,7 +3622,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_12[k] = J_star_t_12;
         s->J_star_t_13[k] = J_star_t_13;
         s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3570,7 +3698,7 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -3703,7 +3831,7 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real axis_x_rrrrrr_axes5_z =
             axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
             axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x;
-        /* (rrrrrr-G12) inertia tensor of link 5 about the connection point */
+        /* (rrrrrr-G13) inertia tensor of link 5 about the connection point */
         const real J_5_t = J_5_xy*s_5;
         const real _x = -J_5_t - J_5_xx*c_5_t;
         const real J_5_t_2 = J_5_xy*c_5_t;
@@ -3722,7 +3850,7 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4;
         const real _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4;
         const real _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t;
-        /* (rrrrrr-G8) first moment of link 4 about the origin of link 4 */
+        /* (rrrrrr-G9) first moment of link 4 about the origin of link 4 */
         const real h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z;
         const real h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4;
         /* (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3 */
@@ -3815,7 +3943,7 @@ INLINE void M_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -4675,7 +4803,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4765,7 +4893,7 @@ INLINE void Z_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -4939,7 +5067,7 @@ INLINE void Z_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -5632,7 +5760,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -5672,7 +5800,7 @@ INLINE void H_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -5846,7 +5974,7 @@ INLINE void H_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, 
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -6180,7 +6308,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -6280,7 +6408,7 @@ INLINE void required_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -6454,7 +6582,7 @@ INLINE void required_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -7255,7 +7383,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -7302,7 +7430,7 @@ INLINE void joint_rates_legs_rrrrrr(const prepared *m, size_t w, size_t leg, siz
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -7476,7 +7604,7 @@ INLINE void joint_rates_legs_rrrrrr(const prepared *m, size_t w, size_t leg, siz
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -7747,7 +7875,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -7800,7 +7928,7 @@ INLINE void joint_accelerations_legs_rrrrrr(const prepared *m, size_t w, size_t 
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -7974,7 +8102,7 @@ INLINE void joint_accelerations_legs_rrrrrr(const prepared *m, size_t w, size_t 
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -8434,7 +8562,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -8534,7 +8662,7 @@ INLINE void legs_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t leg
         const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
         const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
         const real size_ = m->size_[i];
-        const real size_t_2 = m->size_t_2[i];
+        const real size_t_ = m->size_t_[i];
         const real q_1 = joints[(5*i)*w + j];
         const real q_2 = joints[(1 + 5*i)*w + j];
         const real q_3 = joints[(2 + 5*i)*w + j];
@@ -8708,7 +8836,7 @@ INLINE void legs_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t leg
         const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
         const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
         const real w_1_t_14 = end_p1_r8_y*size_;
-        const real w_1_t_15 = root(size_t_2 + w_1_t_14*w_1_t_14);
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
         const real inv_w_1_t_69 = 1/w_1_t_15;
         const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
         const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
@@ -9381,7 +9509,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
             m_star*t_x) + gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
             gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z);
         s->potential_t[k] = potential_t;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -9444,7 +9572,7 @@ INLINE void potential_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_
         const real c_1_t = sine(q_1);
         /* (rrrrrr-K3) sine of the angle of joint 1 from its reference direction */
         const real s_1 = cosine(q_1);
-        /* (rrrrrr-G8) first moment of link 4 about the origin of link 4 */
+        /* (rrrrrr-G9) first moment of link 4 about the origin of link 4 */
         const real h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z;
         /* (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links'
            inertia and weight */
@@ -9461,7 +9589,7 @@ INLINE void potential_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_
         const real b_r3_x = b_r0_z*s_2 - b_r1_y*c_2_t;
         const real b_r3_y = -b_r0_z*c_2_t - b_r1_y*s_2;
         const real potential_t_2 = b_r3_y - bias_t_2;
-        /* (rrrrrr-G11) first moment of link 5 about the connection point */
+        /* (rrrrrr-G12) first moment of link 5 about the connection point */
         const real h_5_r0_y = h_5_x*s_5 - c_5_t*h_5_y;
         const real h_5_r2_x = d_Gamma_4_t*s_4 - c_4_t*h_5_z;
         /* (V1) potential energy */
@@ -9528,6 +9656,484 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, const real
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 2239 mul, 1332 add, 30 div, 31 sqrt, 60 trig, every leg counted ---- */
+typedef struct {
+    real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
+        R_zy[LANES], R_zz[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[7][8], singular[8];
+} condition_results_rrrrrr;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_rrrrrr(const prepared *m, size_t w, size_t leg, size_t legs, const
+    condition_values *s, size_t states, size_t count, int add, const real *joints,
+    condition_results_rrrrrr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real inv_size = m->inv_size[i];
+        const real rrrrrr_base_frame_xx = m->rrrrrr_base_frame_xx[i];
+        const real rrrrrr_base_frame_xy = m->rrrrrr_base_frame_xy[i];
+        const real rrrrrr_base_frame_xz = m->rrrrrr_base_frame_xz[i];
+        const real rrrrrr_base_frame_yx = m->rrrrrr_base_frame_yx[i];
+        const real rrrrrr_base_frame_yy = m->rrrrrr_base_frame_yy[i];
+        const real rrrrrr_base_frame_yz = m->rrrrrr_base_frame_yz[i];
+        const real rrrrrr_base_frame_zx = m->rrrrrr_base_frame_zx[i];
+        const real rrrrrr_base_frame_zy = m->rrrrrr_base_frame_zy[i];
+        const real rrrrrr_base_frame_zz = m->rrrrrr_base_frame_zz[i];
+        const real rrrrrr_joint2_offset_x = m->rrrrrr_joint2_offset_x[i];
+        const real rrrrrr_joint3_offset_x = m->rrrrrr_joint3_offset_x[i];
+        const real rrrrrr_joint4_offset_x = m->rrrrrr_joint4_offset_x[i];
+        const real rrrrrr_joint5_offset_x = m->rrrrrr_joint5_offset_x[i];
+        const real rrrrrr_platform_joint_axis_platform_x = m->rrrrrr_platform_joint_axis_platform_x[i];
+        const real rrrrrr_platform_joint_axis_platform_y = m->rrrrrr_platform_joint_axis_platform_y[i];
+        const real rrrrrr_platform_joint_axis_platform_z = m->rrrrrr_platform_joint_axis_platform_z[i];
+        const real rrrrrr_platform_joint_offset_x = m->rrrrrr_platform_joint_offset_x[i];
+        const real rrrrrr_platform_point_x = m->rrrrrr_platform_point_x[i];
+        const real rrrrrr_platform_point_y = m->rrrrrr_platform_point_y[i];
+        const real rrrrrr_platform_point_z = m->rrrrrr_platform_point_z[i];
+        const real size_ = m->size_[i];
+        const real size_t_ = m->size_t_[i];
+        const real q_1 = joints[(5*i)*w + j];
+        const real q_2 = joints[(1 + 5*i)*w + j];
+        const real q_3 = joints[(2 + 5*i)*w + j];
+        const real q_4 = joints[(3 + 5*i)*w + j];
+        const real q_5 = joints[(4 + 5*i)*w + j];
+        /* (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction */
+        const real c_5_t = sine(q_5);
+        /* (rrrrrr-K11) sine of the angle of joint 5 from its reference direction */
+        const real s_5 = cosine(q_5);
+        /* (rrrrrr-V2) from joint 4 to the connection point, along the links */
+        const real r_4_t = c_5_t*rrrrrr_platform_joint_offset_x;
+        const real r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5;
+        /* (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction */
+        const real c_4_t = sine(q_4);
+        /* (rrrrrr-K9) sine of the angle of joint 4 from its reference direction */
+        const real s_4 = cosine(q_4);
+        /* (rrrrrr-V2) from joint 4 to the connection point, along the links */
+        const real r_4_t_2 = r_4_t*s_4;
+        const real r_4_t_3 = c_4_t*r_4_t;
+        /* (rrrrrr-V3) from joint 3 to the connection point, along the links */
+        const real r_3_x = r_4_z + rrrrrr_joint4_offset_x;
+        /* (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction */
+        const real c_3 = cosine(q_3);
+        /* (rrrrrr-K7) sine of the angle of joint 3 from its reference direction */
+        const real s_3 = sine(q_3);
+        /* (rrrrrr-V3) from joint 3 to the connection point, along the links */
+        const real r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3;
+        /* (rrrrrr-V4) from joint 2 to the connection point, along the links */
+        const real r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3;
+        /* (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction */
+        const real c_2_t = sine(q_2);
+        /* (rrrrrr-K5) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = cosine(q_2);
+        /* (rrrrrr-V4) from joint 2 to the connection point, along the links */
+        const real r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2;
+        /* (rrrrrr-V5) from joint 1 to the connection point, along the links */
+        const real r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y;
+        /* (rrrrrr-V6) velocity of the connection point per rate of joint 1 */
+        const real e_1_r2_x = c_3*s_2 - c_2_t*s_3;
+        const real e_1_r2_y = -c_2_t*c_3 - s_2*s_3;
+        const real v_1_t = c_4_t*e_1_r2_y;
+        const real v_1_t_2 = e_1_r2_y*s_4;
+        const real e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5;
+        const real e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x;
+        /* (rrrrrr-V5) from joint 1 to the connection point, along the links */
+        const real r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x;
+        const real r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2;
+        const real r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3;
+        const real r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3;
+        const real r_1_t = r_4_t_3*s_4;
+        const real r_1_r4_x = r_1_t - c_4_t*r_1_r2_y;
+        const real r_1_t_2 = c_4_t*r_4_t_3;
+        const real r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4;
+        const real r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y;
+        const real r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5;
+        /* (rrrrrr-V6) velocity of the connection point per rate of joint 1 */
+        const real v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t;
+        const real v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t;
+        const real v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x;
+        /* (rrrrrr-V7) velocity of the connection point per rate of joint 2 */
+        const real v_2_t = c_4_t*c_5_t;
+        const real v_2_t_2 = c_4_t*s_5;
+        /* (rrrrrr-V4) from joint 2 to the connection point, along the links */
+        const real r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3;
+        const real r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3;
+        const real r_2_r2_x = r_1_t - c_4_t*r_2_r0_y;
+        const real r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4;
+        const real r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y;
+        const real r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5;
+        /* (rrrrrr-V7) velocity of the connection point per rate of joint 2 */
+        const real v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4;
+        const real v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t;
+        const real v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2;
+        /* (rrrrrr-V3) from joint 3 to the connection point, along the links */
+        const real r_3_r1_x = r_1_t - c_4_t*r_4_t_2;
+        const real r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4;
+        const real r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y;
+        const real r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5;
+        /* (rrrrrr-V8) velocity of the connection point per rate of joint 3 */
+        const real v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4;
+        const real v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t;
+        const real v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2;
+        /* (rrrrrr-V9) velocity of the connection point per rate of joint 4 */
+        const real v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z);
+        /* (rrrrrr-V13) force part of reciprocal wrench 1 */
+        const real w_1_t = c_4_t*s_3;
+        const real w_1_t_2 = c_3*c_4_t;
+        const real axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t;
+        const real axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t;
+        /* (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction */
+        const real c_1_t = sine(q_1);
+        /* (rrrrrr-K3) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = cosine(q_1);
+        /* (rrrrrr-V13) force part of reciprocal wrench 1 */
+        const real axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4;
+        const real axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t;
+        const real axis_z_rrrrrr_axes5_in_base_x = axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz;
+        const real axis_z_rrrrrr_axes5_in_base_y = axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz;
+        const real axis_z_rrrrrr_axes5_in_base_z = axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz;
+        const real w_1_t_3 = s_4*s_5;
+        const real axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3;
+        const real axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3;
+        const real axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t -
+            axis_y_rrrrrr_axes5_r4_y*s_2;
+        const real axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 -
+            axis_y_rrrrrr_axes5_r4_y*c_2_t;
+        const real axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2;
+        const real axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t;
+        const real axis_y_rrrrrr_axes5_in_base_x = axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz;
+        const real axis_y_rrrrrr_axes5_in_base_y = axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz;
+        const real axis_y_rrrrrr_axes5_in_base_z = axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx +
+            axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy +
+            axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz;
+        const real axis_x_rrrrrr_axes5_x =
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y;
+        const real axis_x_rrrrrr_axes5_y =
+            axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z;
+        const real axis_x_rrrrrr_axes5_z =
+            axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+            axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x;
+        /* (rrrrrr-V11) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy
+            + R_yx*rrrrrr_base_frame_yy + R_zx*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+            R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+            R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy);
+        const real end_p1_r0_y = rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz
+            + R_yx*rrrrrr_base_frame_yz + R_zx*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+            R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+            R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz);
+        const real end_p1_r0_z = rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx
+            + R_yx*rrrrrr_base_frame_yx + R_zx*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+            R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+            rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+            R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx);
+        const real end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x;
+        const real end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2;
+        const real end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3;
+        const real end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3;
+        const real end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y;
+        const real end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4;
+        const real end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y;
+        const real end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5;
+        /* (rrrrrr-V13) force part of reciprocal wrench 1 */
+        const real w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x;
+        const real w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2;
+        const real w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t;
+        const real w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4;
+        const real w_1_t_8 = size_*w_1_t_4;
+        const real w_1_t_9 = size_*w_1_t_6;
+        const real w_1_t_10 = size_*w_1_t_5;
+        const real w_1_t_11 = size_*w_1_t_7;
+        const real w_1_t_12 = size_*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5);
+        const real w_1_t_13 = c_5_t*end_p1_r6_x*size_;
+        const real w_1_t_14 = end_p1_r8_y*size_;
+        const real w_1_t_15 = root(size_t_ + w_1_t_14*w_1_t_14);
+        const real inv_w_1_t_69 = 1/w_1_t_15;
+        const real w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x;
+        const real w_1_t_17 = inv_w_1_t_69*w_1_t_14;
+        const real w_1_t_18 = w_1_t_13*w_1_t_17;
+        const real w_1_t_19 = w_1_t_16*w_1_t_18;
+        const real w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18;
+        const real w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9;
+        const real w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21;
+        const real w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21;
+        const real w_1_t_24 = w_1_t_11*w_1_t_17;
+        const real w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24;
+        const real w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25;
+        const real w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25;
+        const real w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16;
+        const real w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28;
+        const real w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28;
+        const real w_1_t_31 = root(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 +
+            w_1_t_20*w_1_t_20);
+        const real inv_w_1_t_101 = 1/w_1_t_31;
+        const real w_1_t_32 = inv_w_1_t_101*w_1_t_19;
+        const real w_1_t_33 = inv_w_1_t_101*v_4_z;
+        const real w_1_t_34 = inv_w_1_t_101*w_1_t_12;
+        const real w_1_t_35 = inv_w_1_t_101*w_1_t_20;
+        const real w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 -
+            v_1_z*w_1_t_33;
+        const real w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22;
+        const real w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36;
+        const real w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8;
+        const real w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23;
+        const real w_1_t_41 = w_1_t_10*w_1_t_34;
+        const real w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33;
+        const real w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26;
+        const real w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42;
+        const real w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10;
+        const real w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27;
+        const real w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33;
+        const real w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29;
+        const real w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47;
+        const real w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10;
+        const real w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30;
+        const real w_1_t_52 = root(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 +
+            w_1_t_39*w_1_t_39 + w_1_t_40*w_1_t_40);
+        const real inv_w_1_t_150 = 1/w_1_t_52;
+        const real w_1_t_53 = inv_w_1_t_150*v_1_x;
+        const real w_1_t_54 = inv_w_1_t_150*w_1_t_37;
+        const real w_1_t_55 = inv_w_1_t_150*w_1_t_38;
+        const real w_1_t_56 = inv_w_1_t_150*w_1_t_39;
+        const real w_1_t_57 = inv_w_1_t_150*w_1_t_40;
+        const real w_1_t_58 = v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 +
+            w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57;
+        const real w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58;
+        const real w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58;
+        const real w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58;
+        const real w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58;
+        const real w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58;
+        const real w_1_t_64 = v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 +
+            w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57;
+        const real w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64;
+        const real w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64;
+        const real w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64;
+        const real w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64;
+        const real w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64;
+        const real w_1_t_70 = root(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 +
+            w_1_t_62*w_1_t_62 + w_1_t_63*w_1_t_63);
+        const real inv_w_1_t_194 = 1/w_1_t_70;
+        const real w_1_t_71 = inv_w_1_t_194*w_1_t_59;
+        const real w_1_t_72 = inv_w_1_t_194*w_1_t_60;
+        const real w_1_t_73 = inv_w_1_t_194*w_1_t_61;
+        const real w_1_t_74 = inv_w_1_t_194*w_1_t_62;
+        const real w_1_t_75 = inv_w_1_t_194*w_1_t_63;
+        const real w_1_t_76 = w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 +
+            w_1_t_68*w_1_t_74 + w_1_t_69*w_1_t_75;
+        const real w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76;
+        const real w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76;
+        const real w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76;
+        const real w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76;
+        const real w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76;
+        const real w_1_t_82 = root(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 +
+            w_1_t_80*w_1_t_80 + w_1_t_81*w_1_t_81);
+        const real inv_w_1_t_222 = 1/w_1_t_82;
+        /* (rrrrrr-V16) force part of reciprocal wrench 2 */
+        const real w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76;
+        const real w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t;
+        const real w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t;
+        const real w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73;
+        const real w_2_t_5 = size_*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t);
+        const real w_2_t_6 = size_*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t);
+        /* (M2) coupling block of M */
+        const real q_in_base_x = R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y +
+            R_xz*rrrrrr_platform_point_z;
+        const real q_in_base_y = R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y +
+            R_yz*rrrrrr_platform_point_z;
+        const real q_in_base_z = R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y +
+            R_zz*rrrrrr_platform_point_z;
+        /* (rrrrrr-V16) force part of reciprocal wrench 2 */
+        const real w_2_in_base_x = axis_x_rrrrrr_axes5_x*w_2_t_2 -
+            axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 - axis_z_rrrrrr_axes5_in_base_x*w_2_t_4;
+        const real w_2_in_base_y = axis_x_rrrrrr_axes5_y*w_2_t_2 -
+            axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 - axis_z_rrrrrr_axes5_in_base_y*w_2_t_4;
+        const real w_2_in_base_z = axis_x_rrrrrr_axes5_z*w_2_t_2 -
+            axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 - axis_z_rrrrrr_axes5_in_base_z*w_2_t_4;
+        /* (rrrrrr-V29) moment part of reciprocal wrench 2 */
+        const real o_2_x = w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x -
+            axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x);
+        const real o_2_y = w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x -
+            axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x);
+        const real o_2_z = w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x -
+            axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
+            w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+            axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x);
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y;
+        const real H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z;
+        const real H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - rrrrrr_platform_point_x;
+        const real spread_t_3 = b_c_y - rrrrrr_platform_point_y;
+        const real spread_t_4 = b_c_z - rrrrrr_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (rrrrrr-V13) force part of reciprocal wrench 1 */
+        const real pivot_size = magnitude(w_1_t_15);
+        const real pivot_size_2 = magnitude(w_1_t_31);
+        const real pivot_size_3 = magnitude(w_1_t_52);
+        const real pivot_size_4 = magnitude(w_1_t_70);
+        const real pivot_size_5 = magnitude(w_1_t_82);
+        const real least_pivots = lesser(lesser(lesser(lesser(inv_size*pivot_size,
+            inv_size*pivot_size_2), inv_size*pivot_size_3), inv_size*pivot_size_4),
+            inv_size*pivot_size_5);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_rrrrrr */
+        o->entry[0][k] = w_2_in_base_x;
+        o->entry[1][k] = w_2_in_base_y;
+        o->entry[2][k] = w_2_in_base_z;
+        o->entry[3][k] = H_a_2_x;
+        o->entry[4][k] = H_a_2_y;
+        o->entry[5][k] = H_a_2_z;
+        o->entry[6][k] = least_pivots;
+        o->singular[k] = UNLESS(magnitude(w_1_t_15) > TOLERANCE*size_) +
+            UNLESS(magnitude(w_1_t_31) > TOLERANCE*size_) + UNLESS(magnitude(w_1_t_52) >
+            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_70) > TOLERANCE*size_) +
+            UNLESS(magnitude(w_1_t_82) > TOLERANCE*size_);
+    }
+}
+
+INLINE void condition_place_rrrrrr(size_t w, const condition_results_rrrrrr *o, size_t leg, size_t
+    first, real *H, real *pivots, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(6 + leg)*w + k] = o->entry[1][first + k];
+        H[(12 + leg)*w + k] = o->entry[2][first + k];
+        H[(18 + leg)*w + k] = o->entry[3][first + k];
+        H[(24 + leg)*w + k] = o->entry[4][first + k];
+        H[(30 + leg)*w + k] = o->entry[5][first + k];
+        pivots[(leg)*w + k] = o->entry[6][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rrrrrr = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_rrrrrr);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, const real *joints, real *H,
+    real *lengths, real *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_rrrrrr results_rrrrrr;
+    clear(reach, 6*w);
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rrrrrr(m, w, 0, 1, s, 0, 6, 0, joints, &results_rrrrrr);
+        for (size_t leg = 0; leg < 6; ++leg) {
+            condition_place_rrrrrr(w, &results_rrrrrr, leg, leg, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrrr.sum[n], 6);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rrrrrr.sum, 0, sizeof results_rrrrrr.sum);
+        for (size_t leg = 0; leg < 6; ++leg) {
+            condition_legs_rrrrrr(m, w, leg, 0, s, 1, w, 1, joints, &results_rrrrrr);
+            condition_place_rrrrrr(w, &results_rrrrrr, leg, 0, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrrr.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -9611,13 +10217,14 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int hexapod_6x6r_complete_acceleration(const prepared *m, const real *X, const real *q0, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 6) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
     (void)m;
     (void)X;
     (void)q0;
     (void)V;
+    (void)wrench;
     deliver(A, 6, 1, &code, completed);
     return code;
 }
@@ -9674,12 +10281,16 @@ int hexapod_6x6r_energy(const prepared *m, const real *X, const real *q0, const 
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, const real *q0, real *gap, real *size)
 {
     static const size_t driven[] = {1, 6, 11, 16, 21, 26};
     real q[30];
     int code = hexapod_6x6r_inverse_kinematics(m, X, q0, q);
+    if (code != HEXAPOD_6X6R_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 6; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -9697,8 +10308,8 @@ static int close_gap(const prepared *m, const real *X, const real *q0, const rea
 {
     real a[BIG*(BIG + 1)], H[36];
     int code = hexapod_6x6r_H(m, X, q0, H);
-    fill_rows(6, H, gap, a);
     if (code == HEXAPOD_6X6R_OK) {
+        fill_rows(6, H, gap, a);
         least_squares(6, 6, a, step);
     }
     return code;
@@ -9707,7 +10318,7 @@ static int close_gap(const prepared *m, const real *X, const real *q0, const rea
 int hexapod_6x6r_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, const real *q0, real *X)
 {
     enum { GAPS = 6 };
-    real found[7], gap[GAPS], trial[7], next[GAPS], step[6];
+    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 6) ? mismatch(m, q_actuated, X0, q0, gap, &size)
         : HEXAPOD_6X6R_INVALID;
@@ -9736,16 +10347,117 @@ int hexapod_6x6r_forward_kinematics(const prepared *m, const real *q_actuated, c
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, const real *q0, real *H, real *pivots)
+{
+    static const size_t moments[] = {3, 4, 5};
+    real lengths[2], reach[6];
+    real joints[30];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(7, 1, X, t->invalid);
+    close_loops(m, 1, X, q0, joints, t);
+    condition_run(m, 1, X, joints, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 6; ++j) {
+            H[moments[i]*6 + j] /= length;
+        }
+    }
+    check(36, 1, H, t->overflow);
+    check(6, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int hexapod_6x6r_condition(const prepared *m, const real *X, const real *q0, real *sigma, real *legs)
+{
+    real H[36], a[36], found[6], pivots[6];
+    const int code = matrices(m, X, q0, H, pivots);
+    if (code != HEXAPOD_6X6R_OK) {
+        refuse(6, sigma);
+        refuse(6, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 6; ++j) {
+            a[i*6 + j] = H[i*6 + j];
+        }
+    }
+    singular_values(6, 6, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int hexapod_6x6r_rotation(const real *X, real *R)
 {
-    const real *const p = X + 3;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 7) && n > 0 && is_finite(n) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 3, p);
+    const int code = all_finite(X, 7) && all_finite(p, 4) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -9754,11 +10466,8 @@ int hexapod_6x6r_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[7] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[3 + i] = p[i]/n;
-    }
+    unit(p, found + 3);
     memcpy(found, t, 3*sizeof *t);
     const int code = all_finite(found, 7) ? HEXAPOD_6X6R_OK : HEXAPOD_6X6R_INVALID;
     deliver(found, 7, 1, &code, X);
@@ -9781,6 +10490,10 @@ int hexapod_6x6r_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(7, X);
+        return HEXAPOD_6X6R_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -9827,6 +10540,11 @@ size_t hexapod_6x6r_M_batch(const hexapod_6x6r_model *model, size_t n, const hex
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, M + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_M(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, M + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -9851,6 +10569,12 @@ size_t hexapod_6x6r_Z_batch(const hexapod_6x6r_model *model, size_t n, const hex
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, Z + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_Z(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k), Z +
+                    6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -9875,6 +10599,11 @@ size_t hexapod_6x6r_H_batch(const hexapod_6x6r_model *model, size_t n, const hex
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, H + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_H(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, H + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -9902,6 +10631,12 @@ size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, co
         int codes[LANES];
         dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, M + 36*i, Z + 6*i, H + 36*i,
             codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i + k),
+                    M + 36*(i + k), Z + 6*(i + k), H + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -9927,6 +10662,12 @@ size_t hexapod_6x6r_inverse_kinematics_batch(const hexapod_6x6r_model *model, si
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, q + 30*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_inverse_kinematics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, q +
+                    30*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -9952,6 +10693,12 @@ size_t hexapod_6x6r_joint_rates_batch(const hexapod_6x6r_model *model, size_t n,
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, rates + 30*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_joint_rates(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V + 6*(i +
+                    k), rates + 30*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -9980,6 +10727,12 @@ size_t hexapod_6x6r_joint_accelerations_batch(const hexapod_6x6r_model *model, s
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, A + 6*i,
             accelerations + 30*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_joint_accelerations(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V +
+                    6*(i + k), A + 6*(i + k), accelerations + 30*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10008,6 +10761,12 @@ size_t hexapod_6x6r_inverse_dynamics_batch(const hexapod_6x6r_model *model, size
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, A + 6*i, wrench ?
             wrench + 6*i : NULL, tau + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_inverse_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V +
+                    6*(i + k), A + 6*(i + k), wrench ? wrench + 6*(i + k) : NULL, tau + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10036,6 +10795,12 @@ size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 7*i, q0 ? q0 + 30*i : NULL, V + 6*i, tau + 6*i, wrench ?
             wrench + 6*i : NULL, A + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HEXAPOD_6X6R_OK) {
+                codes[k] = hexapod_6x6r_forward_dynamics(model, X + 7*(i + k), q0 ? q0 + 30*(i + k) : NULL, V +
+                    6*(i + k), tau + 6*(i + k), wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10048,12 +10813,13 @@ size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size
 
 size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, hexapod_6x6r_real *completed, int *status)
+    hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed, int
+    *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_complete_acceleration(model, X + 7*i, q0 ? q0 + 30*i : NULL, V +
-            6*i, A + 6*i, completed + 6*i);
+            6*i, A + 6*i, wrench ? wrench + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -10093,6 +10859,19 @@ size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, si
     for (size_t i = 0; i < n; ++i) {
         const int code = hexapod_6x6r_forward_kinematics(model, q_actuated + 6*i, X0 + 7*i, q0 ? q0 + 30*i
             : NULL, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real
+    *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hexapod_6x6r_condition(model, X + 7*i, q0 ? q0 + 30*i : NULL, sigma + 6*i, legs +
+            6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

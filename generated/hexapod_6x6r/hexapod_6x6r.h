@@ -20,12 +20,26 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  hexapod_6x6r_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask hexapod_6x6r_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
  * Some displacements q have no closed form: Newton's iteration on the loop closure finds them, at
  * most 60 steps of at most 0.5 (rad or m), from the guess q0 (30 entries, such as the last q along a
  * path; state by state in a batch; extra coordinates are taken from X) or, where q0 is NULL, from
- * hexapod_6x6r_HOME_Q.  It decides which closure is found.  NOT_CONVERGED: none was found.
+ * hexapod_6x6r_HOME_Q.
+ * Found is the closure that the iteration reaches from there, on the assembly branch of home: along
+ * a path in steps small against the distance to the next singular state of a leg, with the last q
+ * as guess, q stays on it.  The branch is told by the sign of the determinant of the closure's
+ * derivative by these displacements, which only a singular state of the leg changes.
+ * NOT_CONVERGED: no closure was found, or one with another sign than home's.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so hexapod_6x6r.c refuses them unless HEXAPOD_6X6R_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as HEXAPOD_6X6R_OK.
  */
 #ifndef HEXAPOD_6X6R_H_INCLUDED
 #define HEXAPOD_6X6R_H_INCLUDED
@@ -118,9 +132,9 @@ typedef struct {
 
 /* What depends on the parameters alone; set by hexapod_6x6r_prepare, then only read. */
 typedef struct {
-    hexapod_6x6r_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    hexapod_6x6r_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type rrrrrr */
     hexapod_6x6r_real J_1_xx[6], J_2_xx[6], J_2_xy[6], J_2_xz[6], J_2_yy[6], J_2_yz[6], J_2_zz[6],
             J_3_xx[6], J_3_xy[6], J_3_xz[6], J_3_yy[6], J_3_yz[6], J_3_zz[6], J_4_xx[6], J_4_xy[6],
@@ -130,26 +144,28 @@ typedef struct {
             Sigma_4_zz[6], Sigma_5_xx[6], Sigma_5_yy[6], Sigma_5_zz[6], b_r0_x[6], b_r0_y[6],
             b_r0_z[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_1_x[6], h_1_y[6], h_1_z[6], h_2_x[6],
             h_2_y[6], h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6], h_5_x[6],
-            h_5_y[6], h_5_z[6], hc_3_x[6], rrrrrr_base_frame_xx[6], rrrrrr_base_frame_xy[6],
-            rrrrrr_base_frame_xz[6], rrrrrr_base_frame_yx[6], rrrrrr_base_frame_yy[6],
-            rrrrrr_base_frame_yz[6], rrrrrr_base_frame_zx[6], rrrrrr_base_frame_zy[6],
-            rrrrrr_base_frame_zz[6], rrrrrr_base_point_x[6], rrrrrr_base_point_y[6],
-            rrrrrr_base_point_z[6], rrrrrr_joint2_offset_x[6], rrrrrr_joint3_offset_x[6],
-            rrrrrr_joint4_offset_x[6], rrrrrr_joint5_offset_x[6], rrrrrr_link1_mass[6],
-            rrrrrr_link2_mass[6], rrrrrr_link3_mass[6], rrrrrr_link4_mass[6], rrrrrr_link5_mass[6],
-            rrrrrr_platform_joint_axis_platform_x[6], rrrrrr_platform_joint_axis_platform_y[6],
-            rrrrrr_platform_joint_axis_platform_z[6], rrrrrr_platform_joint_offset_x[6],
-            rrrrrr_platform_point_x[6], rrrrrr_platform_point_y[6], rrrrrr_platform_point_z[6],
-            size_[6], size_t_2[6];
+            h_5_y[6], h_5_z[6], hc_3_x[6], inv_size[6], rrrrrr_base_frame_xx[6],
+            rrrrrr_base_frame_xy[6], rrrrrr_base_frame_xz[6], rrrrrr_base_frame_yx[6],
+            rrrrrr_base_frame_yy[6], rrrrrr_base_frame_yz[6], rrrrrr_base_frame_zx[6],
+            rrrrrr_base_frame_zy[6], rrrrrr_base_frame_zz[6], rrrrrr_base_point_x[6],
+            rrrrrr_base_point_y[6], rrrrrr_base_point_z[6], rrrrrr_joint2_offset_x[6],
+            rrrrrr_joint3_offset_x[6], rrrrrr_joint4_offset_x[6], rrrrrr_joint5_offset_x[6],
+            rrrrrr_link1_mass[6], rrrrrr_link2_mass[6], rrrrrr_link3_mass[6], rrrrrr_link4_mass[6],
+            rrrrrr_link5_mass[6], rrrrrr_platform_joint_axis_platform_x[6],
+            rrrrrr_platform_joint_axis_platform_y[6], rrrrrr_platform_joint_axis_platform_z[6],
+            rrrrrr_platform_joint_offset_x[6], rrrrrr_platform_point_x[6], rrrrrr_platform_point_y[6],
+            rrrrrr_platform_point_z[6], size_[6], size_t_[6];
 } hexapod_6x6r_model;
 
 extern const hexapod_6x6r_params hexapod_6x6r_default_params;
 extern const hexapod_6x6r_real hexapod_6x6r_HOME_X[HEXAPOD_6X6R_NQ];
 extern const hexapod_6x6r_real hexapod_6x6r_HOME_Q[HEXAPOD_6X6R_NJ];
 
-/* Prepare a model.  HEXAPOD_6X6R_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  HEXAPOD_6X6R_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hexapod_6x6r_prepare(const hexapod_6x6r_params *params, hexapod_6x6r_model *model);
 
 /* Inertia matrix M. 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig; the iteration of q apart. In: X
@@ -183,9 +199,9 @@ size_t hexapod_6x6r_dynamics_batch(const hexapod_6x6r_model *model, size_t n, co
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V,
     hexapod_6x6r_real *M, hexapod_6x6r_real *Z, hexapod_6x6r_real *H, int *status);
 
-/* Displacements q of all joints, on the assembly branch of home; iterated ones: the closure next
-   to q0. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig; the iteration of q apart. In: X (NQ), q0 (NJ, or
-   NULL). Out: q (NJ). */
+/* Displacements q of all joints, on the assembly branch of home; iterated ones: the closure
+   reached from q0. 0 mul, 0 add, 0 div, 0 sqrt, 0 trig; the iteration of q apart. In: X (NQ), q0
+   (NJ, or NULL). Out: q (NJ). */
 int hexapod_6x6r_inverse_kinematics(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X,
     const hexapod_6x6r_real *q0, hexapod_6x6r_real *q);
 size_t hexapod_6x6r_inverse_kinematics_batch(const hexapod_6x6r_model *model, size_t n, const
@@ -228,14 +244,15 @@ size_t hexapod_6x6r_forward_dynamics_batch(const hexapod_6x6r_model *model, size
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
     hexapod_6x6r_real *tau, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), q0 (NJ,
-   or NULL), V (NV), A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), q0
+   (NJ, or NULL), V (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hexapod_6x6r_complete_acceleration(const hexapod_6x6r_model *model, const hexapod_6x6r_real
-    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A,
-    hexapod_6x6r_real *completed);
+    *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const hexapod_6x6r_real *A, const
+    hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed);
 size_t hexapod_6x6r_complete_acceleration_batch(const hexapod_6x6r_model *model, size_t n, const
     hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, const hexapod_6x6r_real *V, const
-    hexapod_6x6r_real *A, hexapod_6x6r_real *completed, int *status);
+    hexapod_6x6r_real *A, const hexapod_6x6r_real *wrench, hexapod_6x6r_real *completed, int
+    *status);
 
 /* Force, then moment, of each leg on the platform at its platform joint, base axes. 5502 mul,
    4050 add, 30 div, 30 sqrt, 60 trig; inverse dynamics apart; the iteration of q apart. In: X
@@ -265,12 +282,23 @@ size_t hexapod_6x6r_forward_kinematics_batch(const hexapod_6x6r_model *model, si
     hexapod_6x6r_real *q_actuated, const hexapod_6x6r_real *X0, const hexapod_6x6r_real *q0,
     hexapod_6x6r_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 2239 mul, 1332 add, 30 div, 31 sqrt, 60 trig; the singular values apart; the iteration
+   of q apart. In: X (NQ), q0 (NJ, or NULL). Out: sigma (6), legs (6). */
+int hexapod_6x6r_condition(const hexapod_6x6r_model *model, const hexapod_6x6r_real *X, const
+    hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real *legs);
+size_t hexapod_6x6r_condition_batch(const hexapod_6x6r_model *model, size_t n, const
+    hexapod_6x6r_real *X, const hexapod_6x6r_real *q0, hexapod_6x6r_real *sigma, hexapod_6x6r_real
+    *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int hexapod_6x6r_rotation(const hexapod_6x6r_real *X, hexapod_6x6r_real *R);
 size_t hexapod_6x6r_rotation_batch(size_t n, const hexapod_6x6r_real *X, hexapod_6x6r_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int hexapod_6x6r_pose(const hexapod_6x6r_real *t, const hexapod_6x6r_real *R, hexapod_6x6r_real
     *X);
 size_t hexapod_6x6r_pose_batch(size_t n, const hexapod_6x6r_real *t, const hexapod_6x6r_real *R,

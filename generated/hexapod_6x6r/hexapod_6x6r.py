@@ -13,7 +13,14 @@ tau:    leg 1 joint 2, leg 2 joint 2, leg 3 joint 2, leg 4 joint 2, leg 5 joint 
 wrench: fx, fy, fz, mx, my, mz
 
 Impossible states (unreachable, singular, not finite) give NaN, in their rows only.
+So do quaternions of length 0, or not from 1.1e-154 to 1.3e154; rotation takes shorter ones too.
+Arguments are made of real numbers: TypeError for complex ones, truth values, text and masked
+arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows what is required, by
+position or keyword; all else is given by keyword.
 """
+
+import warnings
+from numbers import Real
 
 import numpy as np
 
@@ -31,6 +38,7 @@ __all__ = [
     "Parameters",
     "Z",
     "complete_acceleration",
+    "condition",
     "dynamics",
     "energy",
     "forward_dynamics",
@@ -53,15 +61,10 @@ NU = 6
 NC = 0
 NW = 6
 NJ = 30
-HOME_X = np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0])
-HOME_Q = np.array([0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8, 0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8, 0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8])
-HOME_X.setflags(write=False)
-HOME_Q.setflags(write=False)
 
-# Lengths below this fraction of a leg's size, and pivots below it, count as zero.
+# Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_PER_LEG = ("rrrrrr_", )
 _LEGS = {  # positions of the legs of each type
     "rrrrrr": (0, 1, 2, 3, 4, 5),
 }
@@ -268,40 +271,44 @@ _DEFAULTS = {
         [[0.0006, 0.0, 0.0], [0.0, 0.0006, 0.0], [0.0, 0.0, 0.0006]],
     ],
 }
-_RULES = {  # shape, entries that are zero by structure, what the values must be
-    "gravity": ((3,), (), ""),
-    "platform_mass": ((), (), "mass"),
-    "platform_centre_of_mass": ((3,), (), ""),
-    "platform_inertia": ((3, 3), (), "inertia"),
-    "rrrrrr_base_point": ((6, 3), (), ""),
-    "rrrrrr_base_frame": ((6, 3, 3), (), "rotation"),
-    "rrrrrr_platform_point": ((6, 3), (), ""),
-    "rrrrrr_joint2_offset": ((6, 3), (1, 2), ""),
-    "rrrrrr_joint3_offset": ((6, 3), (1, 2), ""),
-    "rrrrrr_joint4_offset": ((6, 3), (1, 2), ""),
-    "rrrrrr_joint5_offset": ((6, 3), (1, 2), ""),
-    "rrrrrr_platform_joint_offset": ((6, 3), (1, 2), ""),
-    "rrrrrr_platform_joint_axis_platform": ((6, 3), (), "unit"),
-    "rrrrrr_link1_mass": ((6,), (), "mass"),
-    "rrrrrr_link1_centre_of_mass": ((6, 3), (), ""),
-    "rrrrrr_link1_inertia": ((6, 3, 3), (), "inertia"),
-    "rrrrrr_link2_mass": ((6,), (), "mass"),
-    "rrrrrr_link2_centre_of_mass": ((6, 3), (), ""),
-    "rrrrrr_link2_inertia": ((6, 3, 3), (), "inertia"),
-    "rrrrrr_link3_mass": ((6,), (), "mass"),
-    "rrrrrr_link3_centre_of_mass": ((6, 3), (), ""),
-    "rrrrrr_link3_inertia": ((6, 3, 3), (), "inertia"),
-    "rrrrrr_link4_mass": ((6,), (), "mass"),
-    "rrrrrr_link4_centre_of_mass": ((6, 3), (), ""),
-    "rrrrrr_link4_inertia": ((6, 3, 3), (), "inertia"),
-    "rrrrrr_link5_mass": ((6,), (), "mass"),
-    "rrrrrr_link5_centre_of_mass": ((6, 3), (), ""),
-    "rrrrrr_link5_inertia": ((6, 3, 3), (), "inertia"),
+_RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
+    "gravity": ((3,), (3,), (), "free"),
+    "platform_mass": ((), (), (), "mass"),
+    "platform_centre_of_mass": ((3,), (3,), (), "free"),
+    "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
+    "rrrrrr_base_point": ((6, 3), (3,), (), "free"),
+    "rrrrrr_base_frame": ((6, 3, 3), (3, 3), (), "rotation"),
+    "rrrrrr_platform_point": ((6, 3), (3,), (), "free"),
+    "rrrrrr_joint2_offset": ((6, 3), (3,), (1, 2), "free"),
+    "rrrrrr_joint3_offset": ((6, 3), (3,), (1, 2), "free"),
+    "rrrrrr_joint4_offset": ((6, 3), (3,), (1, 2), "free"),
+    "rrrrrr_joint5_offset": ((6, 3), (3,), (1, 2), "free"),
+    "rrrrrr_platform_joint_offset": ((6, 3), (3,), (1, 2), "free"),
+    "rrrrrr_platform_joint_axis_platform": ((6, 3), (3,), (), "unit"),
+    "rrrrrr_link1_mass": ((6,), (), (), "mass"),
+    "rrrrrr_link1_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "rrrrrr_link1_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "rrrrrr_link2_mass": ((6,), (), (), "mass"),
+    "rrrrrr_link2_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "rrrrrr_link2_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "rrrrrr_link3_mass": ((6,), (), (), "mass"),
+    "rrrrrr_link3_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "rrrrrr_link3_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "rrrrrr_link4_mass": ((6,), (), (), "mass"),
+    "rrrrrr_link4_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "rrrrrr_link4_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
+    "rrrrrr_link5_mass": ((6,), (), (), "mass"),
+    "rrrrrr_link5_centre_of_mass": ((6, 3), (3,), (), "free"),
+    "rrrrrr_link5_inertia": ((6, 3, 3), (3, 3), (), "inertia"),
 }
 
 
 class Parameters:
     """Parameters of the model: frozen, with read-only copies of arrays.
+
+    Values obey the rules of a specification: masses are not negative, inertia tensors symmetric
+    and without negative principal moments, frames rotations, axes of length 1, and what the
+    structure fixes at zero is zero.  Copies and what is unpickled are made anew from the values.
 
     Attributes:
         gravity: acceleration of gravity, base frame [m/s^2], shape (3,).
@@ -335,14 +342,12 @@ class Parameters:
     """
 
     def __init__(self, **values):
-        """Defaults, with the given values in their place; ValueError if one is impossible."""
-        unknown = sorted(set(values) - set(_DEFAULTS))
-        if unknown:
-            raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
-        for name, rule in _RULES.items():
-            value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_cache", {})
+        """Defaults, with the given values in their place; ValueError if one is impossible.
+
+        TypeError for what is not made of real numbers.  A warning tells of an inertia that no
+        body has, by its principal moments.
+        """
+        _fill(self, values, values)
 
     def __setattr__(self, name, value):
         raise AttributeError("Parameters are frozen; use replace()")
@@ -352,7 +357,10 @@ class Parameters:
 
     def replace(self, **changes):
         """A copy with some values changed."""
-        return Parameters(**{**{name: getattr(self, name) for name in _RULES}, **changes})
+        return _fill(object.__new__(Parameters), {**self._values(), **changes}, changes)
+
+    def __reduce__(self):
+        return _remade, (self._values(),)
 
     def __eq__(self, other):
         if not isinstance(other, Parameters):
@@ -366,6 +374,10 @@ class Parameters:
         changed = [n for n in _RULES if not np.array_equal(getattr(self, n), _DEFAULTS[n])]
         return f"Parameters({', '.join(f'{n}={getattr(self, n)!r}' for n in changed)})"
 
+    def _values(self):
+        """All values by name."""
+        return {name: getattr(self, name) for name in _RULES}
+
     def _prepared(self):
         """Values that depend on the parameters alone, computed once."""
         if "model" not in self._cache:
@@ -373,48 +385,159 @@ class Parameters:
         return self._cache["model"]
 
 
-def _checked(name, value, shape, zeros, rule):
-    """A parameter as a read-only array (or float), or ValueError."""
-    value = np.array(value, dtype=float)
+def _fill(p, values, fresh):
+    """The parameters with these values, checked; fresh ones are warned of, where there is need."""
+    unknown = sorted(set(values) - set(_DEFAULTS))
+    if unknown:
+        raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
+    for name, rule in _RULES.items():
+        value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
+        object.__setattr__(p, name, value)
+        if rule[-1] == "inertia" and name in fresh:
+            _warn(name, value, 4)
+    object.__setattr__(p, "_cache", {})
+    return p
+
+
+def _remade(values):
+    """Parameters from the values of others: a copy, or what was pickled."""
+    return _fill(object.__new__(Parameters), values, ())
+
+
+_REAL = np.dtype(float)
+_KINDS = {"b": "truth values", "c": "complex numbers", "S": "text", "U": "text"}
+
+
+def _numbers(function, name, value):
+    """An argument as an array of floats; TypeError unless it is made of real numbers alone."""
+    try:
+        kind = _unfit(value)
+        if not kind:
+            return np.asarray(value, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{function}: {name} is no array of numbers: {error}") from None
+    raise TypeError(f"{function}: {name}: expected real numbers, got {kind}")
+
+
+def _unfit(value):
+    """What, other than real numbers, a value is made of; or an empty text."""
+    if isinstance(value, (list, tuple)):
+        if set(map(type, value)) <= {float, int, np.float64}:
+            return ""
+        return next(filter(None, map(_unfit, value)), "")
+    if isinstance(value, np.ma.MaskedArray):
+        return "a masked array"
+    if value is None:
+        return "None"
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        odd = (v for v in array.flat if not isinstance(v, Real) or isinstance(v, bool))
+        return next((type(v).__name__ for v in odd), "")
+    return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
+
+
+def _vector(function, name, value, size):
+    """An argument as an array of floats (..., size), or an error that names it."""
+    if type(value) is not np.ndarray or value.dtype is not _REAL:
+        value = _numbers(function, name, value)
+    if value.ndim == 0 or value.shape[-1] != size:
+        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
+    return value
+
+
+def _lead(**arguments):
+    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
+    leads = [v.shape[:-1] for v in arguments.values()]
+    if not any(leads):
+        return ()
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
+
+
+def _given(p):
+    """The parameters, by default the model's own; TypeError for anything else."""
+    if isinstance(p, Parameters):
+        return p
+    if p is None:
+        return _DEFAULT
+    kind = type(p).__name__
+    if kind == "Parameters":
+        kind = f"Parameters of {type(p).__module__} (another module, or this one imported anew)"
+    raise TypeError(f"p: expected Parameters, got {kind}; a wrench is given as wrench=, a first guess as q0=")
+
+
+def _frozen(value):
+    """A copy that cannot be made writable again: its memory is a bytes object."""
+    return np.frombuffer(value.tobytes(), dtype=float).reshape(value.shape)
+
+
+def _checked(name, value, shape, core, zeros, rule):
+    """A parameter as a read-only array (or float); ValueError or TypeError if it is impossible."""
+    value = _numbers("Parameters", name, value) + 0.0  # a copy, without the sign of zero
     if value.shape != shape:
         raise ValueError(f"Parameters: {name} has shape {value.shape}, expected {shape}")
     if not np.all(np.isfinite(value)):
         raise ValueError(f"Parameters: {name} has entries that are not finite")
-    flat = value.reshape(-1, value[0].size if zeros and value.ndim > len(_core(name)) else value.size)
-    if any(np.any(np.abs(flat[:, k]) > 1e-9) for k in zeros):
+    if np.any(np.abs(value) > 1e+12):
+        raise ValueError(f"Parameters: {name} has entries beyond 1e+12 in size")
+    value = np.array(value)
+    each = value.reshape(-1, *core)
+    flat = value.reshape(len(each), -1)
+    if any(np.any(np.abs(flat[:, k]) > 1e-09) for k in zeros):
         raise ValueError(f"Parameters: {name} must be zero in entries {zeros}: the structure is fixed")
-    for k in zeros:
-        flat[:, k] = 0.0
-    message = _violates(value, rule)
+    flat[:, list(zeros)] = 0.0
+    message = _violates(each, rule)
     if message:
         raise ValueError(f"Parameters: {name} {message}")
-    value.setflags(write=False)
-    return value if shape else float(value)
-
-
-def _core(name):
-    """Shape of one leg's entry, or of the whole."""
-    shape = _RULES[name][0]
-    return shape[1:] if name.startswith(_PER_LEG) else shape
+    return _frozen(value) if shape else float(value)
 
 
 def _violates(value, rule):
-    """What is wrong with a parameter, or an empty text."""
+    """What is wrong with the values of a parameter, one after another; or an empty text."""
     if rule == "mass" and np.any(value < 0.0):
         return "must not be negative"
-    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-6):
+    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-06):
         return "must be of length 1"
-    if rule == "inertia" and np.any(np.abs(value - np.swapaxes(value, -1, -2)) > 1e-9 * (
-        1e-300 + np.max(np.abs(value)))):
-        return "must be symmetric"
-    if rule == "rotation":
-        error = np.abs(value @ np.swapaxes(value, -1, -2) - np.eye(3))
-        if np.any(error > 1e-6) or np.any(np.linalg.det(value) < 0.0):
-            return "must be rotation matrices"
+    if rule == "planar_inertia" and np.any(value[:, 2, 2] < 0.0):
+        return "must have an izz that is not negative"
+    if rule == "inertia":
+        rounding = 1e-09 * np.max(np.abs(value), axis=(1, 2))
+        if np.any(np.max(np.abs(value - np.swapaxes(value, 1, 2)), axis=(1, 2)) > rounding):
+            return "must be symmetric to 1e-09 of its largest entry"
+        if np.any(np.linalg.eigvalsh(value)[:, 0] < -rounding):
+            return "must have no negative principal moments, to 1e-09 of its largest entry"
+    if rule in ("rotation", "planar_rotation") and not np.all(_are_rotations(value)):
+        return "must be rotation matrices: orthonormal to 1e-06, determinant +1"
+    if rule == "planar_rotation" and np.any(np.abs(value[:, 2, 2] - 1.0) > 1e-09):
+        return "must turn about the normal of the plane"
     return ""
 
 
+def _are_rotations(R):
+    """Which matrices (..., n, n) have orthonormal rows, to 1e-06, and a positive determinant."""
+    with np.errstate(all="ignore"):
+        error = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1]))
+        return np.all(error <= 1e-06, axis=(-1, -2)) & (np.linalg.det(R) > 0.0)
+
+
+def _warn(name, value, level):
+    """Tell of principal moments that no body has: the largest exceeds the sum of the others."""
+    for tensor in value.reshape(-1, 3, 3):
+        small, middle, large = np.linalg.eigvalsh(tensor)
+        if large > small + middle + 1e-09 * np.max(np.abs(tensor)):
+            warnings.warn(
+                f"Parameters: {name}: principal moments {small:.6g}, {middle:.6g}, {large:.6g} kg m^2"
+                " belong to no body: the largest exceeds the sum of the others", stacklevel=level)
+
+
+HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
+HOME_Q = _frozen(np.array([0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8, 0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8, 0.15, 0.9, -1.0, 0.5, 0.8, -0.15, 0.9, -1.0, -0.5, 0.8]))
+
 _BRANCHES = {  # assembly branch of home, a sign per leg
+    "sigma_closure": np.array([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]),
 }
 
 
@@ -518,14 +641,16 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (rrrrrr-G3) inertia tensor of link 1 about the origin of link 1
+    # (C2) rms distance of the platform points from their centroid
+    spread_t = 0.16666666666666666*sqrt(6.0)
+    # (rrrrrr-G4) inertia tensor of link 1 about the origin of link 1
     J_1_t = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_centre_of_mass_x
     J_1_t_2 = (
     J_1_t + rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_centre_of_mass_y +
         rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_centre_of_mass_z
     )
     J_1_xx = rrrrrr_link1_inertia_xx - rrrrrr_link1_mass*(J_1_t - J_1_t_2)
-    # (rrrrrr-G5) inertia tensor of link 2 about the origin of link 2
+    # (rrrrrr-G6) inertia tensor of link 2 about the origin of link 2
     J_2_t = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_centre_of_mass_x
     J_2_t_2 = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_y
     J_2_t_3 = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_centre_of_mass_z
@@ -545,7 +670,7 @@ def _prepare(p):
         rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
     )
     J_2_zz = rrrrrr_link2_inertia_zz - rrrrrr_link2_mass*(J_2_t_3 - J_2_t_4)
-    # (rrrrrr-G7) inertia tensor of link 3 about the origin of link 3
+    # (rrrrrr-G8) inertia tensor of link 3 about the origin of link 3
     J_3_t = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_centre_of_mass_x
     J_3_t_2 = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_y
     J_3_t_3 = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_centre_of_mass_z
@@ -565,7 +690,7 @@ def _prepare(p):
         rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
     )
     J_3_zz = rrrrrr_link3_inertia_zz - rrrrrr_link3_mass*(J_3_t_3 - J_3_t_4)
-    # (rrrrrr-G9) inertia tensor of link 4 about the origin of link 4
+    # (rrrrrr-G10) inertia tensor of link 4 about the origin of link 4
     J_4_t = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_centre_of_mass_x
     J_4_t_2 = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_y
     J_4_t_3 = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_centre_of_mass_z
@@ -585,9 +710,9 @@ def _prepare(p):
         rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
     )
     J_4_zz = rrrrrr_link4_inertia_zz - rrrrrr_link4_mass*(J_4_t_3 - J_4_t_4)
-    # (rrrrrr-G10) connection point to the centre of mass of link 5
+    # (rrrrrr-G11) connection point to the centre of mass of link 5
     rho_tip_5_x = rrrrrr_link5_centre_of_mass_x - rrrrrr_platform_joint_offset_x
-    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
+    # (rrrrrr-G13) inertia tensor of link 5 about the connection point
     J_5_t = rho_tip_5_x*rho_tip_5_x
     J_5_t_2 = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_centre_of_mass_y
     J_5_t_3 = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_centre_of_mass_z
@@ -603,7 +728,7 @@ def _prepare(p):
     J_5_zz = rrrrrr_link5_inertia_zz - rrrrrr_link5_mass*(J_5_t_3 - J_5_t_4)
     # (rrrrrr-N33) inertia tensor of the links from 4 outwards about joint 4
     Jc_4_xx = J_4_zz + J_5_zz
-    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
     h_4_x = rrrrrr_link4_centre_of_mass_x*rrrrrr_link4_mass
     h_4_y = rrrrrr_link4_centre_of_mass_y*rrrrrr_link4_mass
     h_4_z = rrrrrr_link4_centre_of_mass_z*rrrrrr_link4_mass
@@ -611,7 +736,7 @@ def _prepare(p):
     Jc_3_t = 0.5*rrrrrr_link4_mass
     Jc_3_t_2 = rrrrrr_joint4_offset_x*(h_4_x + Jc_3_t*rrrrrr_joint4_offset_x)
     Jc_3_t_3 = 2.0*Jc_3_t_2
-    # (rrrrrr-G6) first moment of link 3 about the origin of link 3
+    # (rrrrrr-G7) first moment of link 3 about the origin of link 3
     h_3_x = rrrrrr_link3_centre_of_mass_x*rrrrrr_link3_mass
     h_3_y = rrrrrr_link3_centre_of_mass_y*rrrrrr_link3_mass
     h_3_z = rrrrrr_link3_centre_of_mass_z*rrrrrr_link3_mass
@@ -619,41 +744,37 @@ def _prepare(p):
     hc_3_x = h_3_x + h_4_x + rrrrrr_joint4_offset_x*rrrrrr_link4_mass
     # (rrrrrr-N53) inertia tensor of the links from 2 outwards about joint 2
     Jc_2_t = rrrrrr_joint3_offset_x*(Jc_3_t + 0.5*rrrrrr_link3_mass)
-    # (rrrrrr-G4) first moment of link 2 about the origin of link 2
+    # (rrrrrr-G5) first moment of link 2 about the origin of link 2
     h_2_x = rrrrrr_link2_centre_of_mass_x*rrrrrr_link2_mass
     h_2_y = rrrrrr_link2_centre_of_mass_y*rrrrrr_link2_mass
     h_2_z = rrrrrr_link2_centre_of_mass_z*rrrrrr_link2_mass
-    # (rrrrrr-G11) first moment of link 5 about the connection point
+    # (rrrrrr-G12) first moment of link 5 about the connection point
     h_5_x = rho_tip_5_x*rrrrrr_link5_mass
     h_5_y = rrrrrr_link5_centre_of_mass_y*rrrrrr_link5_mass
     h_5_z = rrrrrr_link5_centre_of_mass_z*rrrrrr_link5_mass
-    # (rrrrrr-G1) size of the leg, the measure of what is near singular
-    size_t = (
-    rrrrrr_base_point_x*rrrrrr_base_point_x + rrrrrr_base_point_y*rrrrrr_base_point_y +
-        rrrrrr_base_point_z*rrrrrr_base_point_z
-    )
-    size_t_2 = rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x
-    size_t_3 = rrrrrr_platform_point_x*rrrrrr_platform_point_x
-    size_t_4 = rrrrrr_platform_point_y*rrrrrr_platform_point_y
-    size_t_5 = rrrrrr_platform_point_z*rrrrrr_platform_point_z
-    size_t_6 = size_t_3 + size_t_4 + size_t_5
-    size = (
-    sqrt(rrrrrr_joint2_offset_x*rrrrrr_joint2_offset_x +
-        rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x +
+    # (rrrrrr-G2) length of the leg's lever arms, the measure of what is near singular
+    size_t = rrrrrr_platform_joint_offset_x*rrrrrr_platform_joint_offset_x
+    size_t_2 = (
+    6.98155500249e-07 + rrrrrr_joint3_offset_x*rrrrrr_joint3_offset_x +
         rrrrrr_joint4_offset_x*rrrrrr_joint4_offset_x +
-        rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x + size_t + size_t_2 + size_t_6)
+        rrrrrr_joint5_offset_x*rrrrrr_joint5_offset_x + size_t
     )
+    size = sqrt(size_t_2)
     # (L2) first moment about the platform origin
     h_star_t_4 = rrrrrr_link5_mass*rrrrrr_platform_point_x
     h_star_t_5 = rrrrrr_link5_mass*rrrrrr_platform_point_y
     h_star_t_6 = rrrrrr_link5_mass*rrrrrr_platform_point_z
     # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rrrrrr_link5_mass*(size_t_3 - size_t_6)
-    J_star_t_12 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_y
-    J_star_t_13 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_z
-    J_star_t_14 = rrrrrr_link5_mass*(size_t_4 - size_t_6)
-    J_star_t_15 = rrrrrr_link5_mass*rrrrrr_platform_point_y*rrrrrr_platform_point_z
-    J_star_t_16 = rrrrrr_link5_mass*(size_t_5 - size_t_6)
+    J_star_t_11 = rrrrrr_platform_point_x*rrrrrr_platform_point_x
+    J_star_t_12 = rrrrrr_platform_point_y*rrrrrr_platform_point_y
+    J_star_t_13 = rrrrrr_platform_point_z*rrrrrr_platform_point_z
+    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
+    J_star_t_15 = rrrrrr_link5_mass*(J_star_t_11 - J_star_t_14)
+    J_star_t_16 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_y
+    J_star_t_17 = rrrrrr_link5_mass*rrrrrr_platform_point_x*rrrrrr_platform_point_z
+    J_star_t_18 = rrrrrr_link5_mass*(J_star_t_12 - J_star_t_14)
+    J_star_t_19 = rrrrrr_link5_mass*rrrrrr_platform_point_y*rrrrrr_platform_point_z
+    J_star_t_20 = rrrrrr_link5_mass*(J_star_t_13 - J_star_t_14)
     # (rrrrrr-N16) remainder without the acceleration in: acceleration of the reference point of link 4, less gravity
     g_r0_x = (
     gravity_x*rrrrrr_base_frame_xy + gravity_y*rrrrrr_base_frame_yy +
@@ -691,7 +812,7 @@ def _prepare(p):
     Sigma_2_xx = trace_J_2 - J_2_xx
     Sigma_2_yy = trace_J_2 - J_2_yy
     Sigma_2_zz = trace_J_2 - J_2_zz
-    # (rrrrrr-G2) first moment of link 1 about the origin of link 1
+    # (rrrrrr-G3) first moment of link 1 about the origin of link 1
     h_1_x = rrrrrr_link1_centre_of_mass_x*rrrrrr_link1_mass
     h_1_y = rrrrrr_link1_centre_of_mass_y*rrrrrr_link1_mass
     h_1_z = rrrrrr_link1_centre_of_mass_z*rrrrrr_link1_mass
@@ -708,16 +829,22 @@ def _prepare(p):
     rrrrrr_base_frame_xx*rrrrrr_base_point_x + rrrrrr_base_frame_yx*rrrrrr_base_point_y +
         rrrrrr_base_frame_zx*rrrrrr_base_point_z
     )
+    # (rrrrrr-V13) force part of reciprocal wrench 1
+    inv_size = 1.0/size
     total_rrrrrr = np.sum(np.broadcast_to(rrrrrr_link5_mass, _rrrrrr))
     total_rrrrrr_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrrr))
     total_rrrrrr_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrrr))
     total_rrrrrr_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrrr))
-    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrrrrr))
-    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_12, _rrrrrr))
-    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_13, _rrrrrr))
-    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_14, _rrrrrr))
-    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_15, _rrrrrr))
-    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_16, _rrrrrr))
+    total_rrrrrr_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrrr))
+    total_rrrrrr_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrrr))
+    total_rrrrrr_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrrr))
+    total_rrrrrr_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrrr))
+    total_rrrrrr_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrrr))
+    total_rrrrrr_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrrr))
+    total_rrrrrr_x_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_x, _rrrrrr))
+    total_rrrrrr_y_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr))
+    total_rrrrrr_z_2 = np.sum(np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr))
+    total_rrrrrr_2 = np.sum(np.broadcast_to(size_t_2, _rrrrrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrrr
     # (L2) first moment about the platform origin
@@ -731,17 +858,23 @@ def _prepare(p):
     J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrrr_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrrr_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrrr_zz
-    J_star_t_17 = J_star_xx - J_star_yy
-    J_star_t_18 = 0.5*J_star_t_17
-    J_star_t_19 = J_star_xx - J_star_zz
-    J_star_t_20 = 0.5*J_star_t_19
+    J_star_t_21 = J_star_xx - J_star_yy
+    J_star_t_22 = 0.5*J_star_t_21
+    J_star_t_23 = J_star_xx - J_star_zz
+    J_star_t_24 = 0.5*J_star_t_23
     # (M4) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
+    # (C1) centroid of the platform points
+    b_c_x = 0.16666666666666666*total_rrrrrr_x_2
+    b_c_y = 0.16666666666666666*total_rrrrrr_y_2
+    b_c_z = 0.16666666666666666*total_rrrrrr_z_2
+    # (C3) rms size of the legs, taken where the platform points coincide
+    legs_size = spread_t*sqrt(total_rrrrrr_2)
     shared = {
-        "J_star_t_18": float(J_star_t_18),
-        "J_star_t_20": float(J_star_t_20),
+        "J_star_t_22": float(J_star_t_22),
+        "J_star_t_24": float(J_star_t_24),
         "J_star_xx": float(J_star_xx),
         "J_star_xy": float(J_star_xy),
         "J_star_xz": float(J_star_xz),
@@ -751,13 +884,18 @@ def _prepare(p):
         "Z_p_t": float(Z_p_t),
         "Z_p_t_2": float(Z_p_t_2),
         "Z_p_t_3": float(Z_p_t_3),
+        "b_c_x": float(b_c_x),
+        "b_c_y": float(b_c_y),
+        "b_c_z": float(b_c_z),
         "gravity_x": float(gravity_x),
         "gravity_y": float(gravity_y),
         "gravity_z": float(gravity_z),
         "h_star_x": float(h_star_x),
         "h_star_y": float(h_star_y),
         "h_star_z": float(h_star_z),
+        "legs_size": float(legs_size),
         "m_star": float(m_star),
+        "spread_t": float(spread_t),
     }
     legs = {
         "rrrrrr": {
@@ -823,6 +961,7 @@ def _prepare(p):
             "h_5_y": np.broadcast_to(h_5_y, _rrrrrr),
             "h_5_z": np.broadcast_to(h_5_z, _rrrrrr),
             "hc_3_x": np.broadcast_to(hc_3_x, _rrrrrr),
+            "inv_size": np.broadcast_to(inv_size, _rrrrrr),
             "rrrrrr_base_frame_xx": np.broadcast_to(rrrrrr_base_frame_xx, _rrrrrr),
             "rrrrrr_base_frame_xy": np.broadcast_to(rrrrrr_base_frame_xy, _rrrrrr),
             "rrrrrr_base_frame_xz": np.broadcast_to(rrrrrr_base_frame_xz, _rrrrrr),
@@ -852,7 +991,7 @@ def _prepare(p):
             "rrrrrr_platform_point_y": np.broadcast_to(rrrrrr_platform_point_y, _rrrrrr),
             "rrrrrr_platform_point_z": np.broadcast_to(rrrrrr_platform_point_z, _rrrrrr),
             "size": np.broadcast_to(size, _rrrrrr),
-            "size_t_2": np.broadcast_to(size_t_2, _rrrrrr),
+            "size_t": np.broadcast_to(size_t, _rrrrrr),
         },
     }
     return shared, legs
@@ -908,12 +1047,13 @@ class _Floats:
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
+    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
 
 
 class _Arrays:
     """Functions on arrays over states: the way for batches."""
 
-    sqrt, sin, cos, atan2 = np.sqrt, np.sin, np.cos, np.arctan2
+    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
 
 _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
@@ -921,10 +1061,11 @@ _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 def _evaluate(plan, p, q0, **vectors):
     """Arrays of a plan at the vectors that it reads."""
-    p = _DEFAULT if p is None else p
+    p = _given(p)
+    q0 = _guess(q0)
     if "q" in plan.inputs:
         vectors["q"] = _closed(vectors["X"], q0, p)
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors.values()))
+    lead = _lead(**vectors)
     chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
     return _run(plan, p, *chosen)
 
@@ -1011,7 +1152,7 @@ def _run_block(plan, p, vectors, outputs):
 # dynamics: 10749 mul, 8193 add, 30 div, 30 sqrt, 60 trig
 def _dynamics_before(c, X, V, q, f):
     (
-    J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
     ) = c
     X_3 = X[3]
@@ -1060,12 +1201,12 @@ def _dynamics_before(c, X, V, q, f):
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy
-    J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
+    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
@@ -1098,7 +1239,7 @@ def _dynamics_before(c, X, V, q, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
         omega_y, omega_z, h_star_in_base_x, h_star_in_base_y, h_star_in_base_z, J_star_t_8,
@@ -1124,7 +1265,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
         rrrrrr_joint5_offset_x, rrrrrr_link3_mass, rrrrrr_link4_mass,
         rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
         rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -1265,7 +1406,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
         axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
     )
-    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
+    # (rrrrrr-G13) inertia tensor of link 5 about the connection point
     J_5_t = J_5_xy*s_5
     _x = -J_5_t - J_5_xx*c_5_t
     J_5_t_2 = J_5_xy*c_5_t
@@ -1284,7 +1425,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
     _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
     _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
-    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
     h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
     h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
     # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
@@ -1383,7 +1524,7 @@ def _dynamics_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -2665,7 +2806,7 @@ def _dynamics_after(c, s, t, f):
 # M: 7275 mul, 5289 add, 30 div, 30 sqrt, 60 trig
 def _M_before(c, X, q, f):
     (
-    J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z,
     ) = c
     X_3 = X[3]
@@ -2701,12 +2842,12 @@ def _M_before(c, X, q, f):
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy
-    J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy
+    J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
@@ -2716,7 +2857,7 @@ def _M_before(c, X, q, f):
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
     J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
     J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_in_base_x, h_star_in_base_y,
         h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12, J_star_t_13,
@@ -2738,7 +2879,7 @@ def _M_rrrrrr(c, k, x, s, f):
         rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
         rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
         rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
-        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -2876,7 +3017,7 @@ def _M_rrrrrr(c, k, x, s, f):
     axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
         axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
     )
-    # (rrrrrr-G12) inertia tensor of link 5 about the connection point
+    # (rrrrrr-G13) inertia tensor of link 5 about the connection point
     J_5_t = J_5_xy*s_5
     _x = -J_5_t - J_5_xx*c_5_t
     J_5_t_2 = J_5_xy*c_5_t
@@ -2895,7 +3036,7 @@ def _M_rrrrrr(c, k, x, s, f):
     _x_5 = -Jc_4_t_2 - Jc_4_yy*s_4
     _x_6 = -Jc_4_xz*c_4_t - Jc_4_yz*s_4
     _y_2 = Jc_4_xz*s_4 - Jc_4_yz*c_4_t
-    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
     h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
     h_4_r1_y = c_4_t*h_4_y + h_4_z*s_4
     # (rrrrrr-N44) inertia tensor of the links from 3 outwards about joint 3
@@ -2994,7 +3135,7 @@ def _M_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -3816,7 +3957,7 @@ def _Z_before(c, X, V, q, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
         omega_y, omega_z, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y, Z_q_in_base_z,), (),
@@ -3839,7 +3980,7 @@ def _Z_rrrrrr(c, k, x, s, f):
         rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -4027,7 +4168,7 @@ def _Z_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -4692,7 +4833,7 @@ def _H_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -4707,7 +4848,7 @@ def _H_rrrrrr(c, k, x, s, f):
         rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -4892,7 +5033,7 @@ def _H_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -5153,7 +5294,7 @@ def _required_before(c, X, V, A, q, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
         omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z, f_p_x, f_p_y,
@@ -5178,7 +5319,7 @@ def _required_rrrrrr(c, k, x, s, f):
         rrrrrr_link4_mass, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -5366,7 +5507,7 @@ def _required_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -6097,7 +6238,7 @@ def _joint_rates_before(c, X, V, q, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
         omega_y, omega_z,), (),
@@ -6115,7 +6256,7 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
         rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -6303,7 +6444,7 @@ def _joint_rates_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -6512,7 +6653,7 @@ def _joint_accelerations_before(c, X, V, A, q, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
         omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,), (),
@@ -6530,7 +6671,7 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
         rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -6718,7 +6859,7 @@ def _joint_accelerations_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -7139,7 +7280,7 @@ def _legs_before(c, X, V, A, q, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y, t_dot_z, omega_x,
         omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y, alpha_z,), (),
@@ -7163,7 +7304,7 @@ def _legs_rrrrrr(c, k, x, s, f):
         rrrrrr_link4_mass, rrrrrr_link5_mass, rrrrrr_platform_joint_axis_platform_x,
         rrrrrr_platform_joint_axis_platform_y, rrrrrr_platform_joint_axis_platform_z,
         rrrrrr_platform_joint_offset_x, rrrrrr_platform_point_x, rrrrrr_platform_point_y,
-        rrrrrr_platform_point_z, size, size_t_2,
+        rrrrrr_platform_point_z, size, size_t,
     ) = k
     q_1, q_2, q_3, q_4, q_5 = x
     (
@@ -7351,7 +7492,7 @@ def _legs_rrrrrr(c, k, x, s, f):
     w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
     w_1_t_13 = c_5_t*end_p1_r6_x*size
     w_1_t_14 = end_p1_r8_y*size
-    w_1_t_15 = sqrt(size_t_2 + w_1_t_14*w_1_t_14)
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
     inv_w_1_t_69 = 1.0/w_1_t_15
     w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
     w_1_t_17 = inv_w_1_t_69*w_1_t_14
@@ -8056,7 +8197,7 @@ def _potential_before(c, X, q, f):
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
     )
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (potential_t,), (),)
 
 
@@ -8090,7 +8231,7 @@ def _potential_rrrrrr(c, k, x, s, f):
     c_1_t = sin(q_1)
     # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
     s_1 = cos(q_1)
-    # (rrrrrr-G8) first moment of link 4 about the origin of link 4
+    # (rrrrrr-G9) first moment of link 4 about the origin of link 4
     h_4_r1_x = h_4_y*s_4 - c_4_t*h_4_z
     # (rrrrrr-N78) coefficient of the acceleration in: moment about axis 4 of the distal links' inertia and weight
     d_Gamma_4_t = c_5_t*h_5_x + h_5_y*s_5
@@ -8105,7 +8246,7 @@ def _potential_rrrrrr(c, k, x, s, f):
     b_r3_x = b_r0_z*s_2 - b_r1_y*c_2_t
     b_r3_y = -b_r0_z*c_2_t - b_r1_y*s_2
     potential_t_2 = b_r3_y - bias_t_2
-    # (rrrrrr-G11) first moment of link 5 about the connection point
+    # (rrrrrr-G12) first moment of link 5 about the connection point
     h_5_r0_y = h_5_x*s_5 - c_5_t*h_5_y
     h_5_r2_x = d_Gamma_4_t*s_4 - c_4_t*h_5_z
     # (V1) potential energy
@@ -8141,6 +8282,410 @@ def _potential_after(c, s, t, f):
     potential = -potential_t - total_rrrrrr
     ok = True
     return (ok, (potential,),)
+
+
+# condition: 2239 mul, 1332 add, 30 div, 31 sqrt, 60 trig
+def _condition_before(c, X, q, f):
+    legs_size, = c
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    # X: named entries
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (legs_size,),)
+
+
+def _condition_rrrrrr(c, k, x, s, f):
+    sqrt = f.sqrt
+    sin = f.sin
+    cos = f.cos
+    least = f.least
+    b_c_x, b_c_y, b_c_z = c
+    (
+    inv_size, rrrrrr_base_frame_xx, rrrrrr_base_frame_xy, rrrrrr_base_frame_xz,
+        rrrrrr_base_frame_yx, rrrrrr_base_frame_yy, rrrrrr_base_frame_yz, rrrrrr_base_frame_zx,
+        rrrrrr_base_frame_zy, rrrrrr_base_frame_zz, rrrrrr_joint2_offset_x,
+        rrrrrr_joint3_offset_x, rrrrrr_joint4_offset_x, rrrrrr_joint5_offset_x,
+        rrrrrr_platform_joint_axis_platform_x, rrrrrr_platform_joint_axis_platform_y,
+        rrrrrr_platform_joint_axis_platform_z, rrrrrr_platform_joint_offset_x,
+        rrrrrr_platform_point_x, rrrrrr_platform_point_y, rrrrrr_platform_point_z, size, size_t,
+    ) = k
+    q_1, q_2, q_3, q_4, q_5 = x
+    R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
+    # (rrrrrr-K10) cosine of the angle of joint 5 from its reference direction
+    c_5_t = sin(q_5)
+    # (rrrrrr-K11) sine of the angle of joint 5 from its reference direction
+    s_5 = cos(q_5)
+    # (rrrrrr-V2) from joint 4 to the connection point, along the links
+    r_4_t = c_5_t*rrrrrr_platform_joint_offset_x
+    r_4_z = rrrrrr_joint5_offset_x + rrrrrr_platform_joint_offset_x*s_5
+    # (rrrrrr-K8) cosine of the angle of joint 4 from its reference direction
+    c_4_t = sin(q_4)
+    # (rrrrrr-K9) sine of the angle of joint 4 from its reference direction
+    s_4 = cos(q_4)
+    # (rrrrrr-V2) from joint 4 to the connection point, along the links
+    r_4_t_2 = r_4_t*s_4
+    r_4_t_3 = c_4_t*r_4_t
+    # (rrrrrr-V3) from joint 3 to the connection point, along the links
+    r_3_x = r_4_z + rrrrrr_joint4_offset_x
+    # (rrrrrr-K6) cosine of the angle of joint 3 from its reference direction
+    c_3 = cos(q_3)
+    # (rrrrrr-K7) sine of the angle of joint 3 from its reference direction
+    s_3 = sin(q_3)
+    # (rrrrrr-V3) from joint 3 to the connection point, along the links
+    r_3_r0_y = c_3*r_4_t_2 + r_3_x*s_3
+    # (rrrrrr-V4) from joint 2 to the connection point, along the links
+    r_2_x = rrrrrr_joint3_offset_x + c_3*r_3_x - r_4_t_2*s_3
+    # (rrrrrr-K4) cosine of the angle of joint 2 from its reference direction
+    c_2_t = sin(q_2)
+    # (rrrrrr-K5) sine of the angle of joint 2 from its reference direction
+    s_2 = cos(q_2)
+    # (rrrrrr-V4) from joint 2 to the connection point, along the links
+    r_2_r0_x = -c_2_t*r_2_x - r_3_r0_y*s_2
+    # (rrrrrr-V5) from joint 1 to the connection point, along the links
+    r_1_z = rrrrrr_joint2_offset_x + r_2_x*s_2 - c_2_t*r_3_r0_y
+    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+    e_1_r2_x = c_3*s_2 - c_2_t*s_3
+    e_1_r2_y = -c_2_t*c_3 - s_2*s_3
+    v_1_t = c_4_t*e_1_r2_y
+    v_1_t_2 = e_1_r2_y*s_4
+    e_1_r6_x = c_5_t*v_1_t_2 + e_1_r2_x*s_5
+    e_1_r6_y = s_5*v_1_t_2 - c_5_t*e_1_r2_x
+    # (rrrrrr-V5) from joint 1 to the connection point, along the links
+    r_1_r1_x = r_1_z*s_2 - c_2_t*r_2_r0_x
+    r_1_r1_y = -c_2_t*r_1_z - r_2_r0_x*s_2
+    r_1_r2_x = c_3*r_1_r1_x + r_1_r1_y*s_3
+    r_1_r2_y = c_3*r_1_r1_y - r_1_r1_x*s_3
+    r_1_t = r_4_t_3*s_4
+    r_1_r4_x = r_1_t - c_4_t*r_1_r2_y
+    r_1_t_2 = c_4_t*r_4_t_3
+    r_1_r4_y = -r_1_t_2 - r_1_r2_y*s_4
+    r_1_r6_x = r_1_r2_x*s_5 - c_5_t*r_1_r4_y
+    r_1_r6_y = -c_5_t*r_1_r2_x - r_1_r4_y*s_5
+    # (rrrrrr-V6) velocity of the connection point per rate of joint 1
+    v_1_x = e_1_r6_y*r_1_r4_x + r_1_r6_y*v_1_t
+    v_1_y = -e_1_r6_x*r_1_r4_x - r_1_r6_x*v_1_t
+    v_1_z = e_1_r6_x*r_1_r6_y - e_1_r6_y*r_1_r6_x
+    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+    v_2_t = c_4_t*c_5_t
+    v_2_t_2 = c_4_t*s_5
+    # (rrrrrr-V4) from joint 2 to the connection point, along the links
+    r_2_r0_x_2 = c_3*r_2_x + r_3_r0_y*s_3
+    r_2_r0_y = c_3*r_3_r0_y - r_2_x*s_3
+    r_2_r2_x = r_1_t - c_4_t*r_2_r0_y
+    r_2_r2_y = -r_1_t_2 - r_2_r0_y*s_4
+    r_2_r4_x = r_2_r0_x_2*s_5 - c_5_t*r_2_r2_y
+    r_2_r4_y = -c_5_t*r_2_r0_x_2 - r_2_r2_y*s_5
+    # (rrrrrr-V7) velocity of the connection point per rate of joint 2
+    v_2_x = r_2_r2_x*v_2_t_2 - r_2_r4_y*s_4
+    v_2_y = r_2_r4_x*s_4 - r_2_r2_x*v_2_t
+    v_2_z = r_2_r4_y*v_2_t - r_2_r4_x*v_2_t_2
+    # (rrrrrr-V3) from joint 3 to the connection point, along the links
+    r_3_r1_x = r_1_t - c_4_t*r_4_t_2
+    r_3_r1_y = -r_1_t_2 - r_4_t_2*s_4
+    r_3_r3_x = r_3_x*s_5 - c_5_t*r_3_r1_y
+    r_3_r3_y = -c_5_t*r_3_x - r_3_r1_y*s_5
+    # (rrrrrr-V8) velocity of the connection point per rate of joint 3
+    v_3_x = r_3_r1_x*v_2_t_2 - r_3_r3_y*s_4
+    v_3_y = r_3_r3_x*s_4 - r_3_r1_x*v_2_t
+    v_3_z = r_3_r3_y*v_2_t - r_3_r3_x*v_2_t_2
+    # (rrrrrr-V9) velocity of the connection point per rate of joint 4
+    v_4_z = c_5_t*(c_5_t*r_4_t + r_4_z*s_5) + s_5*(r_4_t*s_5 - c_5_t*r_4_z)
+    # (rrrrrr-V13) force part of reciprocal wrench 1
+    w_1_t = c_4_t*s_3
+    w_1_t_2 = c_3*c_4_t
+    axis_z_rrrrrr_axes5_r5_x = s_2*w_1_t_2 - c_2_t*w_1_t
+    axis_z_rrrrrr_axes5_r5_y = c_2_t*w_1_t_2 + s_2*w_1_t
+    # (rrrrrr-K2) cosine of the angle of joint 1 from its reference direction
+    c_1_t = sin(q_1)
+    # (rrrrrr-K3) sine of the angle of joint 1 from its reference direction
+    s_1 = cos(q_1)
+    # (rrrrrr-V13) force part of reciprocal wrench 1
+    axis_z_rrrrrr_axes5_r7_x = -axis_z_rrrrrr_axes5_r5_x*s_1 - c_1_t*s_4
+    axis_z_rrrrrr_axes5_r7_y = s_1*s_4 - axis_z_rrrrrr_axes5_r5_x*c_1_t
+    axis_z_rrrrrr_axes5_in_base_x = (
+    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
+        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+    )
+    axis_z_rrrrrr_axes5_in_base_y = (
+    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
+        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+    )
+    axis_z_rrrrrr_axes5_in_base_z = (
+    axis_z_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_z_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
+        + axis_z_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+    )
+    w_1_t_3 = s_4*s_5
+    axis_y_rrrrrr_axes5_r4_x = -c_3*c_5_t - s_3*w_1_t_3
+    axis_y_rrrrrr_axes5_r4_y = c_3*w_1_t_3 - c_5_t*s_3
+    axis_y_rrrrrr_axes5_r5_x = -axis_y_rrrrrr_axes5_r4_x*c_2_t - axis_y_rrrrrr_axes5_r4_y*s_2
+    axis_y_rrrrrr_axes5_r5_y = axis_y_rrrrrr_axes5_r4_x*s_2 - axis_y_rrrrrr_axes5_r4_y*c_2_t
+    axis_y_rrrrrr_axes5_r7_x = -axis_y_rrrrrr_axes5_r5_x*s_1 - c_1_t*v_2_t_2
+    axis_y_rrrrrr_axes5_r7_y = s_1*v_2_t_2 - axis_y_rrrrrr_axes5_r5_x*c_1_t
+    axis_y_rrrrrr_axes5_in_base_x = (
+    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_xx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_xy
+        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_xz
+    )
+    axis_y_rrrrrr_axes5_in_base_y = (
+    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_yx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_yy
+        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_yz
+    )
+    axis_y_rrrrrr_axes5_in_base_z = (
+    axis_y_rrrrrr_axes5_r5_y*rrrrrr_base_frame_zx + axis_y_rrrrrr_axes5_r7_x*rrrrrr_base_frame_zy
+        + axis_y_rrrrrr_axes5_r7_y*rrrrrr_base_frame_zz
+    )
+    axis_x_rrrrrr_axes5_x = (
+    axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_z -
+        axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_y
+    )
+    axis_x_rrrrrr_axes5_y = (
+    axis_y_rrrrrr_axes5_in_base_z*axis_z_rrrrrr_axes5_in_base_x -
+        axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_z
+    )
+    axis_x_rrrrrr_axes5_z = (
+    axis_y_rrrrrr_axes5_in_base_x*axis_z_rrrrrr_axes5_in_base_y -
+        axis_y_rrrrrr_axes5_in_base_y*axis_z_rrrrrr_axes5_in_base_x
+    )
+    # (rrrrrr-V11) direction 1 of the moment that the platform joint transmits
+    end_p1_r0_x = (
+    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xy + R_yx*rrrrrr_base_frame_yy +
+        R_zx*rrrrrr_base_frame_zy) +
+        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xy +
+        R_yy*rrrrrr_base_frame_yy + R_zy*rrrrrr_base_frame_zy) +
+        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xy +
+        R_yz*rrrrrr_base_frame_yy + R_zz*rrrrrr_base_frame_zy)
+    )
+    end_p1_r0_y = (
+    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xz + R_yx*rrrrrr_base_frame_yz +
+        R_zx*rrrrrr_base_frame_zz) +
+        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xz +
+        R_yy*rrrrrr_base_frame_yz + R_zy*rrrrrr_base_frame_zz) +
+        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xz +
+        R_yz*rrrrrr_base_frame_yz + R_zz*rrrrrr_base_frame_zz)
+    )
+    end_p1_r0_z = (
+    rrrrrr_platform_joint_axis_platform_x*(R_xx*rrrrrr_base_frame_xx + R_yx*rrrrrr_base_frame_yx +
+        R_zx*rrrrrr_base_frame_zx) +
+        rrrrrr_platform_joint_axis_platform_y*(R_xy*rrrrrr_base_frame_xx +
+        R_yy*rrrrrr_base_frame_yx + R_zy*rrrrrr_base_frame_zx) +
+        rrrrrr_platform_joint_axis_platform_z*(R_xz*rrrrrr_base_frame_xx +
+        R_yz*rrrrrr_base_frame_yx + R_zz*rrrrrr_base_frame_zx)
+    )
+    end_p1_r1_x = end_p1_r0_y*s_1 - c_1_t*end_p1_r0_x
+    end_p1_r1_y = -c_1_t*end_p1_r0_y - end_p1_r0_x*s_1
+    end_p1_r3_x = end_p1_r0_z*s_2 - c_2_t*end_p1_r1_y
+    end_p1_r3_y = -c_2_t*end_p1_r0_z - end_p1_r1_y*s_2
+    end_p1_r4_x = c_3*end_p1_r3_x + end_p1_r3_y*s_3
+    end_p1_r4_y = c_3*end_p1_r3_y - end_p1_r3_x*s_3
+    end_p1_r6_x = end_p1_r1_x*s_4 - c_4_t*end_p1_r4_y
+    end_p1_r6_y = -c_4_t*end_p1_r1_x - end_p1_r4_y*s_4
+    end_p1_r8_x = end_p1_r4_x*s_5 - c_5_t*end_p1_r6_y
+    end_p1_r8_y = -c_5_t*end_p1_r4_x - end_p1_r6_y*s_5
+    # (rrrrrr-V13) force part of reciprocal wrench 1
+    w_1_t_4 = e_1_r6_x*end_p1_r8_y - e_1_r6_y*end_p1_r8_x
+    w_1_t_5 = end_p1_r8_y*v_2_t - end_p1_r8_x*v_2_t_2
+    w_1_t_6 = e_1_r6_y*end_p1_r6_x + end_p1_r8_y*v_1_t
+    w_1_t_7 = end_p1_r6_x*v_2_t_2 - end_p1_r8_y*s_4
+    w_1_t_8 = size*w_1_t_4
+    w_1_t_9 = size*w_1_t_6
+    w_1_t_10 = size*w_1_t_5
+    w_1_t_11 = size*w_1_t_7
+    w_1_t_12 = size*(-c_5_t*end_p1_r8_x - end_p1_r8_y*s_5)
+    w_1_t_13 = c_5_t*end_p1_r6_x*size
+    w_1_t_14 = end_p1_r8_y*size
+    w_1_t_15 = sqrt(size_t + w_1_t_14*w_1_t_14)
+    inv_w_1_t_69 = 1.0/w_1_t_15
+    w_1_t_16 = inv_w_1_t_69*rrrrrr_platform_joint_offset_x
+    w_1_t_17 = inv_w_1_t_69*w_1_t_14
+    w_1_t_18 = w_1_t_13*w_1_t_17
+    w_1_t_19 = w_1_t_16*w_1_t_18
+    w_1_t_20 = w_1_t_13 - w_1_t_17*w_1_t_18
+    w_1_t_21 = v_1_y*w_1_t_16 - w_1_t_17*w_1_t_9
+    w_1_t_22 = v_1_y - w_1_t_16*w_1_t_21
+    w_1_t_23 = w_1_t_9 + w_1_t_17*w_1_t_21
+    w_1_t_24 = w_1_t_11*w_1_t_17
+    w_1_t_25 = v_2_y*w_1_t_16 - w_1_t_24
+    w_1_t_26 = v_2_y - w_1_t_16*w_1_t_25
+    w_1_t_27 = w_1_t_11 + w_1_t_17*w_1_t_25
+    w_1_t_28 = w_1_t_24 - v_3_y*w_1_t_16
+    w_1_t_29 = v_3_y + w_1_t_16*w_1_t_28
+    w_1_t_30 = w_1_t_11 - w_1_t_17*w_1_t_28
+    w_1_t_31 = sqrt(v_4_z*v_4_z + w_1_t_12*w_1_t_12 + w_1_t_19*w_1_t_19 + w_1_t_20*w_1_t_20)
+    inv_w_1_t_101 = 1.0/w_1_t_31
+    w_1_t_32 = inv_w_1_t_101*w_1_t_19
+    w_1_t_33 = inv_w_1_t_101*v_4_z
+    w_1_t_34 = inv_w_1_t_101*w_1_t_12
+    w_1_t_35 = inv_w_1_t_101*w_1_t_20
+    w_1_t_36 = w_1_t_22*w_1_t_32 + w_1_t_23*w_1_t_35 + w_1_t_34*w_1_t_8 - v_1_z*w_1_t_33
+    w_1_t_37 = w_1_t_32*w_1_t_36 - w_1_t_22
+    w_1_t_38 = v_1_z + w_1_t_33*w_1_t_36
+    w_1_t_39 = w_1_t_34*w_1_t_36 - w_1_t_8
+    w_1_t_40 = w_1_t_35*w_1_t_36 - w_1_t_23
+    w_1_t_41 = w_1_t_10*w_1_t_34
+    w_1_t_42 = w_1_t_41 + w_1_t_26*w_1_t_32 + w_1_t_27*w_1_t_35 - v_2_z*w_1_t_33
+    w_1_t_43 = w_1_t_32*w_1_t_42 - w_1_t_26
+    w_1_t_44 = v_2_z + w_1_t_33*w_1_t_42
+    w_1_t_45 = w_1_t_34*w_1_t_42 - w_1_t_10
+    w_1_t_46 = w_1_t_35*w_1_t_42 - w_1_t_27
+    w_1_t_47 = w_1_t_41 + w_1_t_29*w_1_t_32 + w_1_t_30*w_1_t_35 - v_3_z*w_1_t_33
+    w_1_t_48 = w_1_t_32*w_1_t_47 - w_1_t_29
+    w_1_t_49 = v_3_z + w_1_t_33*w_1_t_47
+    w_1_t_50 = w_1_t_34*w_1_t_47 - w_1_t_10
+    w_1_t_51 = w_1_t_35*w_1_t_47 - w_1_t_30
+    w_1_t_52 = (
+    sqrt(v_1_x*v_1_x + w_1_t_37*w_1_t_37 + w_1_t_38*w_1_t_38 + w_1_t_39*w_1_t_39 +
+        w_1_t_40*w_1_t_40)
+    )
+    inv_w_1_t_150 = 1.0/w_1_t_52
+    w_1_t_53 = inv_w_1_t_150*v_1_x
+    w_1_t_54 = inv_w_1_t_150*w_1_t_37
+    w_1_t_55 = inv_w_1_t_150*w_1_t_38
+    w_1_t_56 = inv_w_1_t_150*w_1_t_39
+    w_1_t_57 = inv_w_1_t_150*w_1_t_40
+    w_1_t_58 = (
+    v_2_x*w_1_t_53 + w_1_t_43*w_1_t_54 + w_1_t_44*w_1_t_55 + w_1_t_45*w_1_t_56 + w_1_t_46*w_1_t_57
+    )
+    w_1_t_59 = v_2_x - w_1_t_53*w_1_t_58
+    w_1_t_60 = w_1_t_43 - w_1_t_54*w_1_t_58
+    w_1_t_61 = w_1_t_44 - w_1_t_55*w_1_t_58
+    w_1_t_62 = w_1_t_45 - w_1_t_56*w_1_t_58
+    w_1_t_63 = w_1_t_46 - w_1_t_57*w_1_t_58
+    w_1_t_64 = (
+    v_3_x*w_1_t_53 + w_1_t_48*w_1_t_54 + w_1_t_49*w_1_t_55 + w_1_t_50*w_1_t_56 + w_1_t_51*w_1_t_57
+    )
+    w_1_t_65 = v_3_x - w_1_t_53*w_1_t_64
+    w_1_t_66 = w_1_t_48 - w_1_t_54*w_1_t_64
+    w_1_t_67 = w_1_t_49 - w_1_t_55*w_1_t_64
+    w_1_t_68 = w_1_t_50 - w_1_t_56*w_1_t_64
+    w_1_t_69 = w_1_t_51 - w_1_t_57*w_1_t_64
+    w_1_t_70 = (
+    sqrt(w_1_t_59*w_1_t_59 + w_1_t_60*w_1_t_60 + w_1_t_61*w_1_t_61 + w_1_t_62*w_1_t_62 +
+        w_1_t_63*w_1_t_63)
+    )
+    inv_w_1_t_194 = 1.0/w_1_t_70
+    w_1_t_71 = inv_w_1_t_194*w_1_t_59
+    w_1_t_72 = inv_w_1_t_194*w_1_t_60
+    w_1_t_73 = inv_w_1_t_194*w_1_t_61
+    w_1_t_74 = inv_w_1_t_194*w_1_t_62
+    w_1_t_75 = inv_w_1_t_194*w_1_t_63
+    w_1_t_76 = (
+    w_1_t_65*w_1_t_71 + w_1_t_66*w_1_t_72 + w_1_t_67*w_1_t_73 + w_1_t_68*w_1_t_74 +
+        w_1_t_69*w_1_t_75
+    )
+    w_1_t_77 = w_1_t_65 - w_1_t_71*w_1_t_76
+    w_1_t_78 = w_1_t_66 - w_1_t_72*w_1_t_76
+    w_1_t_79 = w_1_t_67 - w_1_t_73*w_1_t_76
+    w_1_t_80 = w_1_t_68 - w_1_t_74*w_1_t_76
+    w_1_t_81 = w_1_t_69 - w_1_t_75*w_1_t_76
+    w_1_t_82 = (
+    sqrt(w_1_t_77*w_1_t_77 + w_1_t_78*w_1_t_78 + w_1_t_79*w_1_t_79 + w_1_t_80*w_1_t_80 +
+        w_1_t_81*w_1_t_81)
+    )
+    inv_w_1_t_222 = 1.0/w_1_t_82
+    # (rrrrrr-V16) force part of reciprocal wrench 2
+    w_2_t = inv_w_1_t_194*inv_w_1_t_222*w_1_t_76
+    w_2_t_2 = inv_w_1_t_194*w_1_t_71 - inv_w_1_t_222*w_1_t_77*w_2_t
+    w_2_t_3 = inv_w_1_t_194*w_1_t_72 - inv_w_1_t_222*w_1_t_78*w_2_t
+    w_2_t_4 = inv_w_1_t_222*w_1_t_79*w_2_t - inv_w_1_t_194*w_1_t_73
+    w_2_t_5 = size*(inv_w_1_t_194*w_1_t_74 - inv_w_1_t_222*w_1_t_80*w_2_t)
+    w_2_t_6 = size*(inv_w_1_t_194*w_1_t_75 - inv_w_1_t_222*w_1_t_81*w_2_t)
+    # (M2) coupling block of M
+    q_in_base_x = (
+    R_xx*rrrrrr_platform_point_x + R_xy*rrrrrr_platform_point_y + R_xz*rrrrrr_platform_point_z
+    )
+    q_in_base_y = (
+    R_yx*rrrrrr_platform_point_x + R_yy*rrrrrr_platform_point_y + R_yz*rrrrrr_platform_point_z
+    )
+    q_in_base_z = (
+    R_zx*rrrrrr_platform_point_x + R_zy*rrrrrr_platform_point_y + R_zz*rrrrrr_platform_point_z
+    )
+    # (rrrrrr-V16) force part of reciprocal wrench 2
+    w_2_in_base_x = (
+    axis_x_rrrrrr_axes5_x*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_x*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_x*w_2_t_4
+    )
+    w_2_in_base_y = (
+    axis_x_rrrrrr_axes5_y*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_y*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_y*w_2_t_4
+    )
+    w_2_in_base_z = (
+    axis_x_rrrrrr_axes5_z*w_2_t_2 - axis_y_rrrrrr_axes5_in_base_z*w_2_t_3 -
+        axis_z_rrrrrr_axes5_in_base_z*w_2_t_4
+    )
+    # (rrrrrr-V29) moment part of reciprocal wrench 2
+    o_2_x = (
+    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_x*end_p1_r8_x - axis_x_rrrrrr_axes5_x*end_p1_r8_y) +
+        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_x*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_x*end_p1_r6_x)
+    )
+    o_2_y = (
+    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_y*end_p1_r8_x - axis_x_rrrrrr_axes5_y*end_p1_r8_y) +
+        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_y*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_y*end_p1_r6_x)
+    )
+    o_2_z = (
+    w_2_t_5*(axis_y_rrrrrr_axes5_in_base_z*end_p1_r8_x - axis_x_rrrrrr_axes5_z*end_p1_r8_y) +
+        w_2_t_6*(axis_z_rrrrrr_axes5_in_base_z*end_p1_r8_y -
+        axis_y_rrrrrr_axes5_in_base_z*end_p1_r6_x)
+    )
+    # (M8) moment of the column's unit force about the platform origin
+    H_a_2_x = o_2_x + q_in_base_y*w_2_in_base_z - q_in_base_z*w_2_in_base_y
+    H_a_2_y = o_2_y + q_in_base_z*w_2_in_base_x - q_in_base_x*w_2_in_base_z
+    H_a_2_z = o_2_z + q_in_base_x*w_2_in_base_y - q_in_base_y*w_2_in_base_x
+    # (C2) rms distance of the platform points from their centroid
+    spread_t_2 = b_c_x - rrrrrr_platform_point_x
+    spread_t_3 = b_c_y - rrrrrr_platform_point_y
+    spread_t_4 = b_c_z - rrrrrr_platform_point_z
+    spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
+    # (rrrrrr-V13) force part of reciprocal wrench 1
+    pivot_size = abs(w_1_t_15)
+    pivot_size_2 = abs(w_1_t_31)
+    pivot_size_3 = abs(w_1_t_52)
+    pivot_size_4 = abs(w_1_t_70)
+    pivot_size_5 = abs(w_1_t_82)
+    least_pivots = (
+    least(least(least(least(inv_size*pivot_size, inv_size*pivot_size_2), inv_size*pivot_size_3),
+        inv_size*pivot_size_4), inv_size*pivot_size_5)
+    )
+    ok = (abs(w_1_t_15) > _TOLERANCE * size) & (abs(w_1_t_31) > _TOLERANCE * size) & (abs(w_1_t_52) > _TOLERANCE * size) & (abs(w_1_t_70) > _TOLERANCE * size) & (abs(w_1_t_82) > _TOLERANCE * size)
+    return (
+    ok, (spread_t_5,), (w_2_in_base_x, w_2_in_base_y, w_2_in_base_z, H_a_2_x, H_a_2_y, H_a_2_z,
+        least_pivots,),
+    )
+
+
+def _condition_after(c, s, t, f):
+    sqrt = f.sqrt
+    spread_t, = c
+    total_rrrrrr, = t
+    # (C2) rms distance of the platform points from their centroid
+    spread = spread_t*sqrt(total_rrrrrr)
+    ok = True
+    return (ok, (spread,),)
 
 
 # closure_rrrrrr: 1110 mul, 672 add, 0 div, 0 sqrt, 60 trig
@@ -8179,7 +8724,7 @@ def _closure_rrrrrr_before(c, X, q, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -8366,7 +8911,7 @@ _DYNAMICS = _Plan(
 arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
     before=_Part(
         _dynamics_before,
-('J_star_t_18', 'J_star_t_20', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
+('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
         'J_star_zz', 'Z_p_t', 'Z_p_t_2', 'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z',
         'h_star_x', 'h_star_y', 'h_star_z'),
         None,
@@ -8392,7 +8937,7 @@ arrays=(('M', (6, 6)), ('Z', (6,)), ('H', (6, 6))),
             'rrrrrr_link3_mass', 'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -8425,7 +8970,7 @@ _M = _Plan(
 arrays=(('M', (6, 6)),),
     before=_Part(
         _M_before,
-('J_star_t_18', 'J_star_t_20', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
+('J_star_t_22', 'J_star_t_24', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
         'h_star_y', 'h_star_z'),
         None,
         (),
@@ -8447,7 +8992,7 @@ arrays=(('M', (6, 6)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t_2'),
+            'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8),
@@ -8496,7 +9041,7 @@ arrays=(('Z', (6,)),),
             'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -8535,7 +9080,7 @@ arrays=(('H', (6, 6)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t_2'),
+            'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8),
@@ -8579,7 +9124,7 @@ arrays=(('required', (6,)), ('H', (6, 6))),
             'rrrrrr_link4_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
@@ -8653,7 +9198,7 @@ arrays=(('qd', (30,)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t_2'),
+            'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14),
@@ -8689,7 +9234,7 @@ arrays=(('qdd', (30,)),),
             'rrrrrr_platform_joint_axis_platform_x', 'rrrrrr_platform_joint_axis_platform_y',
             'rrrrrr_platform_joint_axis_platform_z', 'rrrrrr_platform_joint_offset_x',
             'rrrrrr_platform_point_x', 'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z',
-            'size', 'size_t_2'),
+            'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
@@ -8731,7 +9276,7 @@ arrays=(('leg_force', (6, 6)), ('drive', (6, 6))),
             'rrrrrr_link4_mass', 'rrrrrr_link5_mass', 'rrrrrr_platform_joint_axis_platform_x',
             'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
             'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
-            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t_2'),
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
 (('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
             ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20),
@@ -8785,6 +9330,50 @@ arrays=(('potential', (1,)),),
 (),
 (0,),
         ((0, 0),),
+    ),
+)
+_CONDITION = _Plan(
+    inputs=('X', 'q'),
+arrays=(('H', (6, 6)), ('lengths', (2,)), ('pivots', (6,)), ('reach', (6,))),
+    before=_Part(
+        _condition_before,
+('legs_size',),
+        None,
+        ((1, 1),),
+    ),
+    legs=(
+        _LegPart(
+            _condition_rrrrrr,
+            "rrrrrr",
+('b_c_x', 'b_c_y', 'b_c_z'),
+('inv_size', 'rrrrrr_base_frame_xx', 'rrrrrr_base_frame_xy', 'rrrrrr_base_frame_xz',
+            'rrrrrr_base_frame_yx', 'rrrrrr_base_frame_yy', 'rrrrrr_base_frame_yz',
+            'rrrrrr_base_frame_zx', 'rrrrrr_base_frame_zy', 'rrrrrr_base_frame_zz',
+            'rrrrrr_joint2_offset_x', 'rrrrrr_joint3_offset_x', 'rrrrrr_joint4_offset_x',
+            'rrrrrr_joint5_offset_x', 'rrrrrr_platform_joint_axis_platform_x',
+            'rrrrrr_platform_joint_axis_platform_y', 'rrrrrr_platform_joint_axis_platform_z',
+            'rrrrrr_platform_joint_offset_x', 'rrrrrr_platform_point_x',
+            'rrrrrr_platform_point_y', 'rrrrrr_platform_point_z', 'size', 'size_t'),
+(('q', (0, 5, 10, 15, 20, 25)), ('q', (1, 6, 11, 16, 21, 26)), ('q', (2, 7, 12, 17, 22, 27)),
+            ('q', (3, 8, 13, 18, 23, 28)), ('q', (4, 9, 14, 19, 24, 29))),
+(0, 1, 2, 3, 4, 5, 6, 7, 8),
+            1,
+            (
+(0, (0, 1, 2, 3, 4, 5)),
+(0, (6, 7, 8, 9, 10, 11)),
+(0, (12, 13, 14, 15, 16, 17)),
+(0, (18, 19, 20, 21, 22, 23)),
+(0, (24, 25, 26, 27, 28, 29)),
+(0, (30, 31, 32, 33, 34, 35)),
+(2, (0, 1, 2, 3, 4, 5)),
+            ),
+        ),
+    ),
+    after=_Part(
+        _condition_after,
+('spread_t',),
+(),
+        ((1, 0),),
     ),
 )
 _CLOSURE_RRRRRR = _Plan(
@@ -8847,6 +9436,7 @@ _DEFAULT = Parameters()
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
 
 
 def _solve(a, b):
@@ -8877,7 +9467,8 @@ def _solve_one(a, b):
         a[i] = [v / size for v in row] + [b[i] / size]
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[best] = a[best], a[k]
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
         if not abs(a[k][k]) > _PIVOT:
             return failure
         head = a[k]
@@ -8898,7 +9489,9 @@ def _solve_block(a, b):
     a = np.concatenate((a, b[:, :, None]), axis=2) / size
     which = np.arange(states)
     for k in range(n):
-        best = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        column = np.abs(a[:, k:, k])
+        best = np.argmax(column, axis=1)
+        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
         a[which, k], a[which, best] = a[which, best], a[which, k].copy()
         good &= np.abs(a[:, k, k]) > _PIVOT
         factor = a[:, k + 1 :, k] / a[:, k, k, None]
@@ -8910,34 +9503,43 @@ def _solve_block(a, b):
     return x
 
 
-_CLOSURES = (  # plan, joints of each leg as positions in q
-    (_CLOSURE_RRRRRR, np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]])),
+_CLOSURES = (  # plan, joints of each leg as positions in q, rows and sign of the determinant
+    (_CLOSURE_RRRRRR, np.array([[0, 1, 2, 3, 4], [5, 6, 7, 8, 9], [10, 11, 12, 13, 14], [15, 16, 17, 18, 19], [20, 21, 22, 23, 24], [25, 26, 27, 28, 29]]), [0, 1, 2, 3, 4], _BRANCHES["sigma_closure"]),
 )
 _EXTRA_JOINTS = ()  # positions in q of the extra coordinates
 _TURNS = np.array((True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True, True))
 
 
-def _closed(X, q0, p):
-    """Displacements q (..., NJ) that close the loops at X, by Newton from q0 (default: home).
+def _guess(q0):
+    """The first guess (..., NJ) of the displacements, by default those of home."""
+    return HOME_Q if q0 is None else _vector("first guess", "q0", q0, NJ)
 
-    NaN where the iteration does not converge in 60 steps of at most 0.5 each.
+
+def _closed(X, q0, p):
+    """Displacements q (..., NJ) that close the loops at X, by Newton from q0 (..., NJ).
+
+    NaN where the iteration does not converge in 60 steps of at most 0.5 each, or not on the
+    assembly branch of home.
     """
-    q0 = HOME_Q if q0 is None else _vector("inverse_kinematics", "q0", q0, NJ)
-    lead = np.broadcast_shapes(X.shape[:-1], q0.shape[:-1])
+    lead = _lead(X=X, q0=q0)
     X = np.broadcast_to(X, (*lead, NQ)).reshape(-1, NQ)
     q = np.broadcast_to(q0, (*lead, NJ)).reshape(-1, NJ).copy()
     for place, joint in enumerate(_EXTRA_JOINTS):
         q[:, joint] = X[:, NQ - len(_EXTRA_JOINTS) + place]
-    for plan, joints in _CLOSURES:
-        _close_legs(plan, joints, X, q, p)
+    for plan, joints, rows, signs in _CLOSURES:
+        _close_legs(plan, joints, X, q, p, rows, signs)
     turned = np.pi - np.remainder(np.pi - q, 2.0 * np.pi)
     fixed = [j for j in range(NJ) if j in _EXTRA_JOINTS or not _TURNS[j]]
     turned[:, fixed] = q[:, fixed]
     return turned.reshape(*lead, NJ)
 
 
-def _close_legs(plan, joints, X, q, p):
-    """Newton's iteration for the legs of a type, all states at once; q is changed."""
+def _close_legs(plan, joints, X, q, p, rows, signs):
+    """Newton's iteration for the legs of a type, all states at once; q is changed.
+
+    What converges off home's branch is NaN: the determinant of the Jacobian's rows, which keeps
+    its sign as long as no leg becomes singular, has not home's sign there.
+    """
     states, (legs, unknowns) = len(X), joints.shape
     open_ = np.isfinite(X).all(axis=1) & np.isfinite(q).all(axis=1)
     q[~open_] = np.nan
@@ -8946,12 +9548,17 @@ def _close_legs(plan, joints, X, q, p):
         if not at.size:
             return
         gap, jacobian = _run(plan, p, *({"X": X, "q": q}[k][at] for k in plan.inputs))
-        step = _newton_step(jacobian.reshape(at.size, legs, -1, unknowns), gap)
+        jacobian = jacobian.reshape(at.size, legs, -1, unknowns)
+        step = _newton_step(jacobian, gap)
         largest = np.max(np.abs(step), axis=(1, 2))
         with np.errstate(all="ignore"):
             step *= np.minimum(1.0, 0.5 / largest)[:, None, None]
         q[at[:, None, None], joints] += step
-        open_[at[~(largest > 1e-11)]] = False  # converged, or not a number
+        steady = ~(largest > 1e-11)  # converged, or not a number
+        open_[at[steady]] = False
+        if rows:
+            turned = np.linalg.slogdet(jacobian[steady][:, :, rows])[0] * signs
+            q[at[steady][~(turned > 0.0).all(axis=1)]] = np.nan
     q[open_] = np.nan
 
 
@@ -8966,30 +9573,22 @@ def _newton_step(jacobian, gap):
     return step
 
 
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or ValueError."""
-    value = np.asarray(value, dtype=float)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
-
-
-def M(X, p=None, q0=None):
+def M(X, p=None, *, q0=None):
     """Inertia matrix (..., NV, NV) at X (..., NQ)."""
     return _evaluate(_M, p, q0, X=_vector("M", "X", X, NQ))[0]
 
 
-def Z(X, V, p=None, q0=None):
+def Z(X, V, p=None, *, q0=None):
     """Velocity and gravity terms (..., NV) at X (..., NQ), V (..., NV)."""
     return _evaluate(_Z, p, q0, X=_vector("Z", "X", X, NQ), V=_vector("Z", "V", V, NV))[0]
 
 
-def H(X, p=None, q0=None):
+def H(X, p=None, *, q0=None):
     """Force transformation (..., NV, NU): actuators to task space."""
     return _evaluate(_H, p, q0, X=_vector("H", "X", X, NQ))[0]
 
 
-def dynamics(X, V, p=None, q0=None):
+def dynamics(X, V, p=None, *, q0=None):
     """M, Z and H together, sharing the work."""
     X, V = _vector("dynamics", "X", X, NQ), _vector("dynamics", "V", V, NV)
     return tuple(_evaluate(_DYNAMICS, p, q0, X=X, V=V)[:3])
@@ -9018,36 +9617,46 @@ def _known(array, axes, *inputs):
     return _together(failed, (array, axes))[0]
 
 
-def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None, q0=None):
+def _weights(weights):
+    """The weights (..., NU) of the drives."""
+    if weights is None:
+        return np.ones(NU)
+    weights = _vector("inverse_dynamics", "weights", weights, NU)
+    if not np.all((weights > 0.0) & (weights < np.inf)):
+        raise ValueError("inverse_dynamics: weights must be positive and finite")
+    return weights
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None, q0=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
     The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
     """
     X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
     A = _vector("inverse_dynamics", "A", A, NV)
+    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
+    _lead(X=X, V=V, A=A, wrench=external, weights=weights, q0=_guess(q0))
     required, matrix, *rest = _evaluate(_REQUIRED, p, q0, X=X, V=V, A=A)
-    force = required - _external("inverse_dynamics", wrench)
+    force = required - external
     return _drive_forces(matrix, rest[0] if rest else None, force, weights)
 
 
-def forward_dynamics(X, V, tau, p=None, wrench=None, q0=None):
+def forward_dynamics(X, V, tau, p=None, *, wrench=None, q0=None):
     """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau = _vector("forward_dynamics", "tau", tau, NU)
+    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
+    _lead(X=X, V=V, tau=tau, wrench=external, q0=_guess(q0))
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, q0, X=X, V=V)
-    external = _external("forward_dynamics", wrench)
     with np.errstate(all="ignore"):
         force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _solve(inertia, force)
 
 
-def complete_acceleration(X, V, A, p=None, q0=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
-    """
+def complete_acceleration(X, V, A, p=None, *, wrench=None, q0=None):
+    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
     X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A = _vector("complete_acceleration", "A", A, NV)
-    q0 = HOME_Q if q0 is None else _vector("complete_acceleration", "q0", q0, NJ)
-    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1], q0.shape[:-1])
+    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
+    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external, q0=_guess(q0))
     return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
@@ -9059,44 +9668,105 @@ def _drive_forces(matrix, directions, force, weights):
     return _known(tau, 1, force)
 
 
-def null_space(X, p=None, q0=None):
+def null_space(X, p=None, *, q0=None):
     """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
     X = _vector("null_space", "X", X, NQ)
-    q0 = HOME_Q if q0 is None else _vector("null_space", "q0", q0, NJ)
-    return np.zeros((*np.broadcast_shapes(X.shape[:-1], q0.shape[:-1]), NU, 0))
+    _given(p)
+    return np.zeros((*_lead(X=X, q0=_guess(q0)), NU, 0))
 
 
-def inverse_kinematics(X, p=None, q0=None):
+_MOMENT_ROWS = (3, 4, 5)  # rows of H that are moments
+
+
+def condition(X, p=None, *, length=None, q0=None):
+    """How far a pose is from singularities: sigma (..., 6), legs (..., 6), status (...).
+
+    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
+    rule the rms distance of the platform points from their centroid (where they coincide, the
+    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
+    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
+    converged, as in C; sigma and legs are NaN where it is not 0.
+    """
+    return _condition("condition", X, p, length, q0)
+
+
+def _condition(name, X, p, length, q0, columns=NU):
+    """sigma of the first columns of H, margins of the legs, status codes."""
+    X = _vector(name, "X", X, NQ)
+    p = _DEFAULT if p is None else p
+    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
+        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    q0 = HOME_Q if q0 is None else _vector(name, "q0", q0, NJ)
+    q = _closed(X, q0, p)
+    lead = q.shape[:-1]
+    guess = np.broadcast_to(q0, q.shape).reshape(-1, NJ)
+    vectors = {"X": np.broadcast_to(X, (*lead, NQ)).reshape(-1, NQ), "q": q.reshape(-1, NJ)}
+    states = len(vectors["X"])
+    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
+    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
+    with np.errstate(all="ignore"):
+        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
+        _run_block(_CONDITION, p, flat, made)
+        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
+        spread, legs_size = found["lengths"].T
+        if length is None:
+            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
+        matrix = found["H"]
+        matrix[:, list(_MOMENT_ROWS)] /= length
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
+        status = np.select(
+            [
+                ~(np.isfinite(vectors["X"]).all(axis=1) & np.isfinite(guess).all(axis=1) & given),
+                np.isnan(vectors["q"]).any(axis=1),
+                ~(found["reach"] >= 0.0).all(axis=1),
+                ~(found["pivots"] > _TOLERANCE).all(axis=1),
+                ~finite,
+            ],
+            [3, 4, 1, 2, 3],
+            0,
+        )
+    good = (status == 0)[:, None]
+    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
+    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
+    return (
+        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
+        status.reshape(lead)[()],
+    )
+
+
+def inverse_kinematics(X, p=None, *, q0=None):
     """Displacements q (..., NJ) of all joints at X.
 
-    Where there is no closed form they are iterated from q0 (default: home) to the closure next to
-    it, NaN if Newton does not converge; the others are on the assembly branch of home.
+    Where there is no closed form they are iterated from q0 (default: home), NaN if Newton does
+    not converge, or to a closure that is not on the assembly branch of home, as the sign of the
+    closure's determinant tells; from the last q of a path in small steps they stay on it.
     """
     return _evaluate(_INVERSE_KINEMATICS, p, q0, X=_vector("inverse_kinematics", "X", X, NQ))[0]
 
 
-def joint_rates(X, V, p=None, q0=None):
+def joint_rates(X, V, p=None, *, q0=None):
     """Rates of all joints (..., NJ)."""
     X, V = _vector("joint_rates", "X", X, NQ), _vector("joint_rates", "V", V, NV)
     return _evaluate(_JOINT_RATES, p, q0, X=X, V=V)[0]
 
 
-def joint_accelerations(X, V, A, p=None, q0=None):
+def joint_accelerations(X, V, A, p=None, *, q0=None):
     """Accelerations of all joints (..., NJ)."""
     X, V = _vector("joint_accelerations", "X", X, NQ), _vector("joint_accelerations", "V", V, NV)
     return _evaluate(
         _JOINT_ACCELERATIONS, p, q0, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
 
 
-def leg_reactions(X, V, A, p=None, wrench=None, q0=None):
+def leg_reactions(X, V, A, p=None, *, wrench=None, q0=None):
     """Force and moment of each leg on the platform (..., legs, 6) at its platform joint, base axes.
 
     The drives give the forces of `inverse_dynamics`.
     """
     X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
     A = _vector("leg_reactions", "A", A, NV)
+    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
     forces, drive, *directions = _evaluate(_LEGS_FORCE, p, q0, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench, q0=q0)
+    tau = inverse_dynamics(X, V, A, p, wrench=wrench, q0=q0)
     parts = [(tau, drive, _ACTUATOR_LEGS)]
     forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
     for amounts, vectors, legs in parts:
@@ -9105,9 +9775,10 @@ def leg_reactions(X, V, A, p=None, wrench=None, q0=None):
     return _together(np.isnan(forces).any(axis=(-1, -2)), (forces, 2))[0]
 
 
-def energy(X, V, p=None, q0=None):
+def energy(X, V, p=None, *, q0=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
+    _lead(X=X, V=V, q0=_guess(q0))
     inertia = M(X, p, q0=q0)
     with np.errstate(all="ignore"):
         kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
@@ -9116,15 +9787,15 @@ def energy(X, V, p=None, q0=None):
     return kinetic + known, potential + known
 
 
-def forward_kinematics(q_actuated, X0, p=None, q0=None):
+def forward_kinematics(q_actuated, X0, p=None, *, q0=None):
     """X at which the driven joints stand at q_actuated (..., NU), by Gauss-Newton from X0.
 
     Extra coordinates that the drives do not determine stay.  NaN where no X is found.
     """
     q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0 = _vector("forward_kinematics", "X0", X0, NQ)
-    q0 = HOME_Q if q0 is None else _vector("forward_kinematics", "q0", q0, NJ)
-    lead = np.broadcast_shapes(q_actuated.shape[:-1], X0.shape[:-1], q0.shape[:-1])
+    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
+    q0 = _guess(q0)
+    lead = _lead(q_actuated=q_actuated, X0=X0, q0=q0)
     target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
     X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
     guess = np.broadcast_to(q0, (*lead, NJ)).reshape(-1, NJ)
@@ -9166,31 +9837,74 @@ def _find_pose(q_actuated, X, p, q0):
     return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
 
 
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
+
+
 _Q = 3  # where the quaternion begins in X
 
 
 def rotation(X):
-    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised."""
+    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised.
+
+    NaN where it is zero or its squared length overflows.
+    """
     X = _vector("rotation", "X", X, NQ)
     with np.errstate(all="ignore"):
-        q = X[..., _Q : _Q + 4]
-        length = np.linalg.norm(q, axis=-1, keepdims=True)
-        x, y, z, w = np.moveaxis(q / np.where(np.isfinite(length), length, np.nan), -1, 0)
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
+        x, y, z, w = np.moveaxis(_scaled(X[..., _Q : _Q + 4]), -1, 0)
+        xx, yy, zz, ww = x * x, y * y, z * z, w * w
+        n = xx + yy + zz + ww
+        rows = (
+            ((xx + ww - (yy + zz)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n),
+            (2 * (x * y + w * z) / n, (yy + ww - (xx + zz)) / n, 2 * (y * z - w * x) / n),
+            (2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (zz + ww - (xx + yy)) / n),
+        )
     return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
 
 
-def pose(t, R):
-    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero."""
-    R = np.asarray(R, dtype=float)
-    if R.shape[-2:] != (3, 3):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., 3, 3)")
+def _scaled(q):
+    """Quaternions (..., 4) with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=-1, keepdims=True)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=-1, keepdims=True)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions (..., 4) of length 1."""
+    q = _scaled(q)
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def pose(t, R, *, nearest=False):
+    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero.
+
+    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
+    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    """
+    R = _rotations(R, 3, nearest)
     with np.errstate(all="ignore"):
-        return _with_position(t, _quaternion(R))
+        return _with_position("pose", t, _quaternion(R))
 
 
 def _quaternion(R):
@@ -9208,13 +9922,13 @@ def _quaternion(R):
     ], axis=-2)
     best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
     q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return _unit(q)
 
 
-def _with_position(t, q):
-    """X of a position and a quaternion (or angle); extra coordinates zero."""
-    t = _vector("pose", "t", t, _Q)
-    lead = np.broadcast_shapes(t.shape[:-1], q.shape[:-1])
+def _with_position(function, t, q):
+    """X of a position and a quaternion; extra coordinates zero."""
+    t = _vector(function, "t", t, _Q)
+    lead = _lead(t=t, rotation=q)
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
     return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
 
@@ -9229,17 +9943,16 @@ def pose_from_rpy(t, rpy):
         sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
         cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
     ), axis=-1)
-    return _with_position(t, q)
+    return _with_position("pose_from_rpy", t, q)
 
 
 def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV)."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    q, w = X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
+    lead, q, w = _lead(X=X, V=V), X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
     with np.errstate(all="ignore"):
         vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
         scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
-    lead = np.broadcast_shapes(X.shape[:-1], V.shape[:-1])
     parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
     rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
     return _known(rate, 1, X)
@@ -9250,7 +9963,7 @@ def _moved(X, step):
     w = step[_Q : _Q + 3]
     angle = np.linalg.norm(w)
     turn = np.append(w * (0.5 * np.sinc(angle / (2 * np.pi))), np.cos(0.5 * angle))
-    a, q = turn, X[_Q : _Q + 4] / np.linalg.norm(X[_Q : _Q + 4])
+    a, q = turn, _unit(X[_Q : _Q + 4])
     vector = a[3] * q[:3] + q[3] * a[:3] + np.cross(a[:3], q[:3])
     scalar = a[3] * q[3] - a[:3] @ q[:3]
     return np.concatenate((X[:_Q] + step[:_Q], vector, [scalar], X[_Q + 4 :] + step[_Q + 3 :]))

@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  hybrid_3crs_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask hybrid_3crs_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so hybrid_3crs.c refuses them unless HYBRID_3CRS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as HYBRID_3CRS_OK.
  */
 #ifndef HYBRID_3CRS_H_INCLUDED
 #define HYBRID_3CRS_H_INCLUDED
@@ -87,29 +96,31 @@ typedef struct {
 
 /* What depends on the parameters alone; set by hybrid_3crs_prepare, then only read. */
 typedef struct {
-    hybrid_3crs_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    hybrid_3crs_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type rprs */
     hybrid_3crs_real J_2_xx[3], J_3_xx[3], J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3],
             Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3], b_r0_x[3], b_r0_y[3], b_r0_z[3], branch_1[3],
             branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3], h_2_y[3], h_2_z[3], h_3_x[3],
-            h_3_y[3], h_3_z[3], inv_size_t_6[3], rprs_base_frame_xx[3], rprs_base_frame_xy[3],
-            rprs_base_frame_xz[3], rprs_base_frame_yx[3], rprs_base_frame_yy[3],
-            rprs_base_frame_yz[3], rprs_base_frame_zx[3], rprs_base_frame_zy[3],
-            rprs_base_frame_zz[3], rprs_base_point_x[3], rprs_base_point_y[3], rprs_base_point_z[3],
-            rprs_joint3_offset_x[3], rprs_link2_mass[3], rprs_link3_mass[3],
+            h_3_y[3], h_3_z[3], inv_size[3], inv_size_t[3], inv_size_t_2[3], rprs_base_frame_xx[3],
+            rprs_base_frame_xy[3], rprs_base_frame_xz[3], rprs_base_frame_yx[3],
+            rprs_base_frame_yy[3], rprs_base_frame_yz[3], rprs_base_frame_zx[3],
+            rprs_base_frame_zy[3], rprs_base_frame_zz[3], rprs_base_point_x[3], rprs_base_point_y[3],
+            rprs_base_point_z[3], rprs_joint3_offset_x[3], rprs_link2_mass[3], rprs_link3_mass[3],
             rprs_platform_joint_offset_x[3], rprs_platform_point_x[3], rprs_platform_point_y[3],
-            rprs_platform_point_z[3], size_[3], size_t_2[3], size_t_7[3];
+            rprs_platform_point_z[3], size_[3], size_t_[3], size_t_2[3];
 } hybrid_3crs_model;
 
 extern const hybrid_3crs_params hybrid_3crs_default_params;
 extern const hybrid_3crs_real hybrid_3crs_HOME_X[HYBRID_3CRS_NQ];
 extern const hybrid_3crs_real hybrid_3crs_HOME_Q[HYBRID_3CRS_NJ];
 
-/* Prepare a model.  HYBRID_3CRS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  HYBRID_3CRS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3crs_prepare(const hybrid_3crs_params *params, hybrid_3crs_model *model);
 
 /* Inertia matrix M. 558 mul, 423 add, 9 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -180,13 +191,14 @@ size_t hybrid_3crs_forward_dynamics_batch(const hybrid_3crs_model *model, size_t
     hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *tau, const
     hybrid_3crs_real *wrench, hybrid_3crs_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hybrid_3crs_complete_acceleration(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
-    const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real *completed);
+    const hybrid_3crs_real *V, const hybrid_3crs_real *A, const hybrid_3crs_real *wrench,
+    hybrid_3crs_real *completed);
 size_t hybrid_3crs_complete_acceleration_batch(const hybrid_3crs_model *model, size_t n, const
-    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, hybrid_3crs_real
-    *completed, int *status);
+    hybrid_3crs_real *X, const hybrid_3crs_real *V, const hybrid_3crs_real *A, const
+    hybrid_3crs_real *wrench, hybrid_3crs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 648 mul, 471 add, 9 div, 6
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -213,12 +225,22 @@ int hybrid_3crs_forward_kinematics(const hybrid_3crs_model *model, const hybrid_
 size_t hybrid_3crs_forward_kinematics_batch(const hybrid_3crs_model *model, size_t n, const
     hybrid_3crs_real *q_actuated, const hybrid_3crs_real *X0, hybrid_3crs_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 274 mul, 180 add, 9 div, 10 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (3). */
+int hybrid_3crs_condition(const hybrid_3crs_model *model, const hybrid_3crs_real *X,
+    hybrid_3crs_real *sigma, hybrid_3crs_real *legs);
+size_t hybrid_3crs_condition_batch(const hybrid_3crs_model *model, size_t n, const
+    hybrid_3crs_real *X, hybrid_3crs_real *sigma, hybrid_3crs_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int hybrid_3crs_rotation(const hybrid_3crs_real *X, hybrid_3crs_real *R);
 size_t hybrid_3crs_rotation_batch(size_t n, const hybrid_3crs_real *X, hybrid_3crs_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int hybrid_3crs_pose(const hybrid_3crs_real *t, const hybrid_3crs_real *R, hybrid_3crs_real *X);
 size_t hybrid_3crs_pose_batch(size_t n, const hybrid_3crs_real *t, const hybrid_3crs_real *R,
     hybrid_3crs_real *X, int *status);

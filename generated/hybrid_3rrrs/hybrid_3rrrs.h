@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  hybrid_3rrrs_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask hybrid_3rrrs_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so hybrid_3rrrs.c refuses them unless HYBRID_3RRRS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as HYBRID_3RRRS_OK.
  */
 #ifndef HYBRID_3RRRS_H_INCLUDED
 #define HYBRID_3RRRS_H_INCLUDED
@@ -95,33 +104,36 @@ typedef struct {
 
 /* What depends on the parameters alone; set by hybrid_3rrrs_prepare, then only read. */
 typedef struct {
-    hybrid_3rrrs_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    hybrid_3rrrs_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type rrrs */
     hybrid_3rrrs_real J_1_xx[3], J_2_xx[3], J_2_xy[3], J_2_xz[3], J_2_yy[3], J_2_yz[3], J_3_xx[3],
             J_3_xy[3], J_3_xz[3], J_3_yy[3], J_3_yz[3], J_3_zz[3], Jc_2_zz[3], Kd_2_t[3], Kd_2_t_2[3],
             Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], Sigma_3_xx[3], Sigma_3_yy[3], Sigma_3_zz[3],
             b_r0_x[3], b_r0_y[3], branch_1[3], branch_2[3], d_Gamma_2_t[3], d_Gamma_2_y[3], d_c_yy[3],
             d_phi_3_t[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_1_x[3], h_1_y[3], h_1_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], inv_rrrs_platform_joint_offset_x[3],
-            inv_size_t_6[3], inv_size_t_7[3], potential_t[3], potential_t_2[3], rho2_2_t[3],
-            rrrs_base_frame_xx[3], rrrs_base_frame_xy[3], rrrs_base_frame_xz[3],
-            rrrs_base_frame_yx[3], rrrs_base_frame_yy[3], rrrs_base_frame_yz[3],
-            rrrs_base_frame_zx[3], rrrs_base_frame_zy[3], rrrs_base_frame_zz[3], rrrs_base_point_x[3],
-            rrrs_base_point_y[3], rrrs_base_point_z[3], rrrs_joint2_offset_x[3],
-            rrrs_joint3_offset_x[3], rrrs_link1_mass[3], rrrs_link2_mass[3], rrrs_link3_mass[3],
+            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], inv_rho2_2_t_4[3],
+            inv_rrrs_platform_joint_offset_x[3], inv_size[3], inv_size_t[3], inv_size_t_2[3],
+            inv_size_t_3[3], potential_t[3], potential_t_2[3], rho2_2_t[3], rrrs_base_frame_xx[3],
+            rrrs_base_frame_xy[3], rrrs_base_frame_xz[3], rrrs_base_frame_yx[3],
+            rrrs_base_frame_yy[3], rrrs_base_frame_yz[3], rrrs_base_frame_zx[3],
+            rrrs_base_frame_zy[3], rrrs_base_frame_zz[3], rrrs_base_point_x[3], rrrs_base_point_y[3],
+            rrrs_base_point_z[3], rrrs_joint2_offset_x[3], rrrs_joint3_offset_x[3],
+            rrrs_link1_mass[3], rrrs_link2_mass[3], rrrs_link3_mass[3],
             rrrs_platform_joint_offset_x[3], rrrs_platform_point_x[3], rrrs_platform_point_y[3],
-            rrrs_platform_point_z[3], size_[3], size_t_8[3];
+            rrrs_platform_point_z[3], size_[3], size_t_3[3];
 } hybrid_3rrrs_model;
 
 extern const hybrid_3rrrs_params hybrid_3rrrs_default_params;
 extern const hybrid_3rrrs_real hybrid_3rrrs_HOME_X[HYBRID_3RRRS_NQ];
 extern const hybrid_3rrrs_real hybrid_3rrrs_HOME_Q[HYBRID_3RRRS_NJ];
 
-/* Prepare a model.  HYBRID_3RRRS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  HYBRID_3RRRS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_prepare(const hybrid_3rrrs_params *params, hybrid_3rrrs_model *model);
 
 /* Inertia matrix M. 666 mul, 489 add, 12 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -194,13 +206,14 @@ size_t hybrid_3rrrs_forward_dynamics_batch(const hybrid_3rrrs_model *model, size
     hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *tau, const
     hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hybrid_3rrrs_complete_acceleration(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real
-    *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, hybrid_3rrrs_real *completed);
+    *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const hybrid_3rrrs_real *wrench,
+    hybrid_3rrrs_real *completed);
 size_t hybrid_3rrrs_complete_acceleration_batch(const hybrid_3rrrs_model *model, size_t n, const
-    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A,
-    hybrid_3rrrs_real *completed, int *status);
+    hybrid_3rrrs_real *X, const hybrid_3rrrs_real *V, const hybrid_3rrrs_real *A, const
+    hybrid_3rrrs_real *wrench, hybrid_3rrrs_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 885 mul, 630 add, 12 div, 6
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -227,12 +240,22 @@ int hybrid_3rrrs_forward_kinematics(const hybrid_3rrrs_model *model, const hybri
 size_t hybrid_3rrrs_forward_kinematics_batch(const hybrid_3rrrs_model *model, size_t n, const
     hybrid_3rrrs_real *q_actuated, const hybrid_3rrrs_real *X0, hybrid_3rrrs_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 343 mul, 192 add, 12 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (3). */
+int hybrid_3rrrs_condition(const hybrid_3rrrs_model *model, const hybrid_3rrrs_real *X,
+    hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs);
+size_t hybrid_3rrrs_condition_batch(const hybrid_3rrrs_model *model, size_t n, const
+    hybrid_3rrrs_real *X, hybrid_3rrrs_real *sigma, hybrid_3rrrs_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int hybrid_3rrrs_rotation(const hybrid_3rrrs_real *X, hybrid_3rrrs_real *R);
 size_t hybrid_3rrrs_rotation_batch(size_t n, const hybrid_3rrrs_real *X, hybrid_3rrrs_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int hybrid_3rrrs_pose(const hybrid_3rrrs_real *t, const hybrid_3rrrs_real *R, hybrid_3rrrs_real
     *X);
 size_t hybrid_3rrrs_pose_batch(size_t n, const hybrid_3rrrs_real *t, const hybrid_3rrrs_real *R,

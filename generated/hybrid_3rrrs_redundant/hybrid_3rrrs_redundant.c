@@ -3,6 +3,12 @@
 
 #include "hybrid_3rrrs_redundant.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(HYBRID_3RRRS_REDUNDANT_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define HYBRID_3RRRS_REDUNDANT_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef hybrid_3rrrs_redundant_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -357,76 +395,76 @@ const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_Q[HYBRID_3RRRS_RED
 static int acceptable(const hybrid_3rrrs_redundant_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->rrrrs_base_point[0][0], 3);
-    ok &= all_finite(&p->rrrrs_base_frame[0][0][0], 9);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rrrrs_base_point[0][0], 3);
+    ok &= all_within(&p->rrrrs_base_frame[0][0][0], 9);
     ok &= all_rotations(&p->rrrrs_base_frame[0][0][0], 1);
-    ok &= all_finite(&p->rrrrs_platform_point[0][0], 3);
-    ok &= all_finite(&p->rrrrs_joint2_offset[0][0], 3);
+    ok &= all_within(&p->rrrrs_platform_point[0][0], 3);
+    ok &= all_within(&p->rrrrs_joint2_offset[0][0], 3);
     ok &= all_zero(&p->rrrrs_joint2_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->rrrrs_joint2_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrrrs_joint3_offset[0][0], 3);
+    ok &= all_within(&p->rrrrs_joint3_offset[0][0], 3);
     ok &= all_zero(&p->rrrrs_joint3_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->rrrrs_joint3_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrrrs_joint4_offset[0][0], 3);
+    ok &= all_within(&p->rrrrs_joint4_offset[0][0], 3);
     ok &= all_zero(&p->rrrrs_joint4_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->rrrrs_joint4_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrrrs_platform_joint_offset[0][0], 3);
+    ok &= all_within(&p->rrrrs_platform_joint_offset[0][0], 3);
     ok &= all_zero(&p->rrrrs_platform_joint_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->rrrrs_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrrrs_link1_mass[0], 1);
+    ok &= all_within(&p->rrrrs_link1_mass[0], 1);
     ok &= none_negative(&p->rrrrs_link1_mass[0], 1);
-    ok &= all_finite(&p->rrrrs_link1_centre_of_mass[0][0], 3);
-    ok &= all_finite(&p->rrrrs_link1_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rrrrs_link1_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrrrs_link2_mass[0], 1);
+    ok &= all_within(&p->rrrrs_link1_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rrrrs_link1_inertia[0][0][0], 9);
+    ok &= all_inertias(&p->rrrrs_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrrrs_link2_mass[0], 1);
     ok &= none_negative(&p->rrrrs_link2_mass[0], 1);
-    ok &= all_finite(&p->rrrrs_link2_centre_of_mass[0][0], 3);
-    ok &= all_finite(&p->rrrrs_link2_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rrrrs_link2_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrrrs_link3_mass[0], 1);
+    ok &= all_within(&p->rrrrs_link2_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rrrrs_link2_inertia[0][0][0], 9);
+    ok &= all_inertias(&p->rrrrs_link2_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrrrs_link3_mass[0], 1);
     ok &= none_negative(&p->rrrrs_link3_mass[0], 1);
-    ok &= all_finite(&p->rrrrs_link3_centre_of_mass[0][0], 3);
-    ok &= all_finite(&p->rrrrs_link3_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rrrrs_link3_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrrrs_link4_mass[0], 1);
+    ok &= all_within(&p->rrrrs_link3_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rrrrs_link3_inertia[0][0][0], 9);
+    ok &= all_inertias(&p->rrrrs_link3_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrrrs_link4_mass[0], 1);
     ok &= none_negative(&p->rrrrs_link4_mass[0], 1);
-    ok &= all_finite(&p->rrrrs_link4_centre_of_mass[0][0], 3);
-    ok &= all_finite(&p->rrrrs_link4_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rrrrs_link4_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrrs_base_point[0][0], 6);
-    ok &= all_finite(&p->rrrs_base_frame[0][0][0], 18);
+    ok &= all_within(&p->rrrrs_link4_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rrrrs_link4_inertia[0][0][0], 9);
+    ok &= all_inertias(&p->rrrrs_link4_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrrs_base_point[0][0], 6);
+    ok &= all_within(&p->rrrs_base_frame[0][0][0], 18);
     ok &= all_rotations(&p->rrrs_base_frame[0][0][0], 2);
-    ok &= all_finite(&p->rrrs_platform_point[0][0], 6);
-    ok &= all_finite(&p->rrrs_joint2_offset[0][0], 6);
+    ok &= all_within(&p->rrrs_platform_point[0][0], 6);
+    ok &= all_within(&p->rrrs_joint2_offset[0][0], 6);
     ok &= all_zero(&p->rrrs_joint2_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrrs_joint2_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrrs_joint3_offset[0][0], 6);
+    ok &= all_within(&p->rrrs_joint3_offset[0][0], 6);
     ok &= all_zero(&p->rrrs_joint3_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrrs_joint3_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrrs_platform_joint_offset[0][0], 6);
+    ok &= all_within(&p->rrrs_platform_joint_offset[0][0], 6);
     ok &= all_zero(&p->rrrs_platform_joint_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrrs_platform_joint_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrrs_link1_mass[0], 2);
+    ok &= all_within(&p->rrrs_link1_mass[0], 2);
     ok &= none_negative(&p->rrrs_link1_mass[0], 2);
-    ok &= all_finite(&p->rrrs_link1_centre_of_mass[0][0], 6);
-    ok &= all_finite(&p->rrrs_link1_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrrs_link1_inertia[0][0][0], 2);
-    ok &= all_finite(&p->rrrs_link2_mass[0], 2);
+    ok &= all_within(&p->rrrs_link1_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrrs_link1_inertia[0][0][0], 18);
+    ok &= all_inertias(&p->rrrs_link1_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrrs_link2_mass[0], 2);
     ok &= none_negative(&p->rrrs_link2_mass[0], 2);
-    ok &= all_finite(&p->rrrs_link2_centre_of_mass[0][0], 6);
-    ok &= all_finite(&p->rrrs_link2_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrrs_link2_inertia[0][0][0], 2);
-    ok &= all_finite(&p->rrrs_link3_mass[0], 2);
+    ok &= all_within(&p->rrrs_link2_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrrs_link2_inertia[0][0][0], 18);
+    ok &= all_inertias(&p->rrrs_link2_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrrs_link3_mass[0], 2);
     ok &= none_negative(&p->rrrs_link3_mass[0], 2);
-    ok &= all_finite(&p->rrrs_link3_centre_of_mass[0][0], 6);
-    ok &= all_finite(&p->rrrs_link3_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrrs_link3_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrrs_link3_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrrs_link3_inertia[0][0][0], 18);
+    ok &= all_inertias(&p->rrrs_link3_inertia[0][0][0], 2);
     return ok;
 }
 
@@ -446,6 +484,10 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     real total_rrrrs_yy = 0;
     real total_rrrrs_yz = 0;
     real total_rrrrs_zz = 0;
+    real total_rrrrs_x_2 = 0;
+    real total_rrrrs_y_2 = 0;
+    real total_rrrrs_z_2 = 0;
+    real total_rrrrs_2 = 0;
     real total_rrrs = 0;
     real total_rrrs_x = 0;
     real total_rrrs_y = 0;
@@ -456,6 +498,10 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     real total_rrrs_yy = 0;
     real total_rrrs_yz = 0;
     real total_rrrs_zz = 0;
+    real total_rrrs_x_2 = 0;
+    real total_rrrs_y_2 = 0;
+    real total_rrrs_z_2 = 0;
+    real total_rrrs_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -546,37 +592,30 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real branch_1_rrrrs = signs_branch_1_rrrrs[leg];
         static const signed char signs_branch_3_rrrrs[] = {1};
         const real branch_3_rrrrs = signs_branch_3_rrrrs[leg];
-        /* (rrrrs-G1) size of the leg, the measure of what is near singular */
-        const real size_rrrrs_t = rrrrs_base_point_x*rrrrs_base_point_x +
-            rrrrs_base_point_y*rrrrs_base_point_y + rrrrs_base_point_z*rrrrs_base_point_z;
-        const real size_rrrrs_t_2 = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x;
-        const real size_rrrrs_t_3 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x;
-        const real size_rrrrs_t_4 = rrrrs_platform_point_x*rrrrs_platform_point_x;
-        const real size_rrrrs_t_5 = rrrrs_platform_point_y*rrrrs_platform_point_y;
-        const real size_rrrrs_t_6 = rrrrs_platform_point_z*rrrrs_platform_point_z;
-        const real size_rrrrs_t_7 = size_rrrrs_t_4 + size_rrrrs_t_5 + size_rrrrs_t_6;
-        const real size_rrrrs_t_8 = rrrrs_joint2_offset_x*rrrrs_joint2_offset_x +
-            rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + size_rrrrs_t + size_rrrrs_t_2 +
-            size_rrrrs_t_3 + size_rrrrs_t_7;
-        const real size_rrrrs = root(size_rrrrs_t_8);
+        /* (rrrrs-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_rrrrs_t = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x;
+        const real size_rrrrs_t_2 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x;
+        const real size_rrrrs_t_3 = R(6.696672622239999e-07) +
+            rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + size_rrrrs_t + size_rrrrs_t_2;
+        const real size_rrrrs = root(size_rrrrs_t_3);
         /* (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 3 */
-        const real Kd_3_rrrrs_t = R(0.5)*size_rrrrs_t_2;
-        const real Kd_3_rrrrs_t_2 = R(0.5)*size_rrrrs_t_3;
+        const real Kd_3_rrrrs_t = R(0.5)*size_rrrrs_t;
+        const real Kd_3_rrrrs_t_2 = R(0.5)*size_rrrrs_t_2;
         /* (rrrrs-K22) squared amplitude */
-        const real rho2_3_rrrrs_t = size_rrrrs*size_rrrrs*size_rrrrs_t_8;
+        const real rho2_3_rrrrs_t = size_rrrrs*size_rrrrs*size_rrrrs_t_3;
         /* (rrrrs-K29) the vector from joint 3 to the connection point, resolved along link 3 */
-        const real inv_size_rrrrs_t_7 = 1/size_rrrrs_t_2;
+        const real inv_size_rrrrs_t_2 = 1/size_rrrrs_t;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real inv_size_rrrrs_t_8 = 1/size_rrrrs_t_3;
-        /* (rrrrs-G3) inertia tensor of link 1 about the origin of link 1 */
+        const real inv_size_rrrrs_t_3 = 1/size_rrrrs_t_2;
+        /* (rrrrs-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x;
         const real J_1_rrrrs_t_2 = J_1_rrrrs_t +
             rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
             rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z;
         const real J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t -
             J_1_rrrrs_t_2);
-        /* (rrrrs-G5) inertia tensor of link 2 about the origin of link 2 */
+        /* (rrrrs-G6) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_rrrrs_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x;
         const real J_2_rrrrs_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y;
         const real J_2_rrrrs_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z;
@@ -593,7 +632,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
         const real J_2_rrrrs_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(J_2_rrrrs_t_3 -
             J_2_rrrrs_t_4);
-        /* (rrrrs-G7) inertia tensor of link 3 about the origin of link 3 */
+        /* (rrrrs-G8) inertia tensor of link 3 about the origin of link 3 */
         const real J_3_rrrrs_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x;
         const real J_3_rrrrs_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y;
         const real J_3_rrrrs_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z;
@@ -610,10 +649,10 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
         const real J_3_rrrrs_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(J_3_rrrrs_t_3 -
             J_3_rrrrs_t_4);
-        /* (rrrrs-G8) connection point to the centre of mass of link 4 */
+        /* (rrrrs-G9) connection point to the centre of mass of link 4 */
         const real rho_tip_4_rrrrs_x = rrrrs_link4_centre_of_mass_x -
             rrrrs_platform_joint_offset_x;
-        /* (rrrrs-G10) inertia tensor of link 4 about the connection point */
+        /* (rrrrs-G11) inertia tensor of link 4 about the connection point */
         const real J_4_rrrrs_t = rho_tip_4_rrrrs_x*rho_tip_4_rrrrs_x;
         const real J_4_rrrrs_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y;
         const real J_4_rrrrs_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z;
@@ -632,18 +671,18 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             J_4_rrrrs_t_4);
         /* (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3 */
         const real Jc_3_rrrrs_zz = J_3_rrrrs_zz + J_4_rrrrs_zz;
-        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        /* (rrrrs-G7) first moment of link 3 about the origin of link 3 */
         const real h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass;
         const real h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass;
         const real h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass;
         /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
         const real Jc_2_rrrrs_t = R(0.5)*rrrrs_joint3_offset_x*rrrrs_link3_mass;
         const real Jc_2_rrrrs_t_2 = h_3_rrrrs_z*rrrrs_joint3_offset_x;
-        /* (rrrrs-G4) first moment of link 2 about the origin of link 2 */
+        /* (rrrrs-G5) first moment of link 2 about the origin of link 2 */
         const real h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass;
         const real h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass;
         const real h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass;
-        /* (rrrrs-G9) first moment of link 4 about the connection point */
+        /* (rrrrs-G10) first moment of link 4 about the connection point */
         const real h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass;
         const real h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass;
         const real h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass;
@@ -667,12 +706,16 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real h_star_t_5 = rrrrs_link4_mass*rrrrs_platform_point_y;
         const real h_star_t_6 = rrrrs_link4_mass*rrrrs_platform_point_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = rrrrs_link4_mass*(size_rrrrs_t_7 - size_rrrrs_t_4);
-        const real J_star_t_12 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_y;
-        const real J_star_t_13 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_z;
-        const real J_star_t_14 = rrrrs_link4_mass*(size_rrrrs_t_5 - size_rrrrs_t_7);
-        const real J_star_t_15 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z;
-        const real J_star_t_16 = rrrrs_link4_mass*(size_rrrrs_t_6 - size_rrrrs_t_7);
+        const real J_star_t_11 = rrrrs_platform_point_x*rrrrs_platform_point_x;
+        const real J_star_t_12 = rrrrs_platform_point_y*rrrrs_platform_point_y;
+        const real J_star_t_13 = rrrrs_platform_point_z*rrrrs_platform_point_z;
+        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
+        const real J_star_t_15 = rrrrs_link4_mass*(J_star_t_11 - J_star_t_14);
+        const real J_star_t_16 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_y;
+        const real J_star_t_17 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_z;
+        const real J_star_t_18 = rrrrs_link4_mass*(J_star_t_12 - J_star_t_14);
+        const real J_star_t_19 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z;
+        const real J_star_t_20 = rrrrs_link4_mass*(J_star_t_13 - J_star_t_14);
         /* (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link
            3, less gravity */
         const real g_r0_x = gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy +
@@ -702,7 +745,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real Sigma_2_rrrrs_xx = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_xx;
         const real Sigma_2_rrrrs_yy = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_yy;
         const real Sigma_2_rrrrs_zz = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_zz;
-        /* (rrrrs-G2) first moment of link 1 about the origin of link 1 */
+        /* (rrrrs-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_rrrrs_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass;
         const real h_1_rrrrs_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass;
         const real h_1_rrrrs_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass;
@@ -715,6 +758,12 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrrs_base_frame_yx*rrrrs_base_point_y + rrrrs_base_frame_zx*rrrrs_base_point_z;
         const real potential_t_3 = b_rrrrs_r0_z*rrrrs_link1_mass;
         const real potential_t_4 = rrrrs_link2_mass*(b_rrrrs_r0_z + rrrrs_joint2_offset_x);
+        /* (rrrrs-K7) squared amplitude */
+        const real inv_size_rrrrs_t_4 = 1/size_rrrrs_t_3;
+        /* (rrrrs-K22) squared amplitude */
+        const real inv_rho2_3_rrrrs_t_4 = 1/rho2_3_rrrrs_t;
+        /* (rrrrs-V9) reciprocal vector 1 */
+        const real inv_size_rrrrs = 1/size_rrrrs;
         model->J_1_rrrrs_xx[leg] = J_1_rrrrs_xx;
         model->J_2_rrrrs_xx[leg] = J_2_rrrrs_xx;
         model->J_2_rrrrs_xy[leg] = J_2_rrrrs_xy;
@@ -772,9 +821,12 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->h_4_rrrrs_x[leg] = h_4_rrrrs_x;
         model->h_4_rrrrs_y[leg] = h_4_rrrrs_y;
         model->h_4_rrrrs_z[leg] = h_4_rrrrs_z;
+        model->inv_rho2_3_rrrrs_t_4[leg] = inv_rho2_3_rrrrs_t_4;
         model->inv_rrrrs_platform_joint_offset_x[leg] = inv_rrrrs_platform_joint_offset_x;
-        model->inv_size_rrrrs_t_7[leg] = inv_size_rrrrs_t_7;
-        model->inv_size_rrrrs_t_8[leg] = inv_size_rrrrs_t_8;
+        model->inv_size_rrrrs[leg] = inv_size_rrrrs;
+        model->inv_size_rrrrs_t_2[leg] = inv_size_rrrrs_t_2;
+        model->inv_size_rrrrs_t_3[leg] = inv_size_rrrrs_t_3;
+        model->inv_size_rrrrs_t_4[leg] = inv_size_rrrrs_t_4;
         model->potential_t_3[leg] = potential_t_3;
         model->potential_t_4[leg] = potential_t_4;
         model->rho2_3_rrrrs_t[leg] = rho2_3_rrrrs_t;
@@ -802,17 +854,21 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->rrrrs_platform_point_y[leg] = rrrrs_platform_point_y;
         model->rrrrs_platform_point_z[leg] = rrrrs_platform_point_z;
         model->size_rrrrs[leg] = size_rrrrs;
-        model->size_rrrrs_t_8[leg] = size_rrrrs_t_8;
+        model->size_rrrrs_t_3[leg] = size_rrrrs_t_3;
         total_rrrrs += rrrrs_link4_mass;
         total_rrrrs_x += h_star_t_4;
         total_rrrrs_y += h_star_t_5;
         total_rrrrs_z += h_star_t_6;
-        total_rrrrs_xx += J_star_t_11;
-        total_rrrrs_xy += J_star_t_12;
-        total_rrrrs_xz += J_star_t_13;
-        total_rrrrs_yy += J_star_t_14;
-        total_rrrrs_yz += J_star_t_15;
-        total_rrrrs_zz += J_star_t_16;
+        total_rrrrs_xx += J_star_t_15;
+        total_rrrrs_xy += J_star_t_16;
+        total_rrrrs_xz += J_star_t_17;
+        total_rrrrs_yy += J_star_t_18;
+        total_rrrrs_yz += J_star_t_19;
+        total_rrrrs_zz += J_star_t_20;
+        total_rrrrs_x_2 += rrrrs_platform_point_x;
+        total_rrrrs_y_2 += rrrrs_platform_point_y;
+        total_rrrrs_z_2 += rrrrs_platform_point_z;
+        total_rrrrs_2 += size_rrrrs_t_3;
     }
     for (size_t leg = 0; leg < 2; ++leg) {
         const real rrrs_base_point_x = params->rrrs_base_point[leg][0];
@@ -862,36 +918,29 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real branch_1_rrrs = signs_branch_1_rrrs[leg];
         static const signed char signs_branch_2_rrrs[] = {1, 1};
         const real branch_2_rrrs = signs_branch_2_rrrs[leg];
-        /* (rrrs-G1) size of the leg, the measure of what is near singular */
-        const real size_rrrs_t = rrrs_base_point_x*rrrs_base_point_x +
-            rrrs_base_point_y*rrrs_base_point_y + rrrs_base_point_z*rrrs_base_point_z;
-        const real size_rrrs_t_2 = rrrs_joint3_offset_x*rrrs_joint3_offset_x;
-        const real size_rrrs_t_3 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x;
-        const real size_rrrs_t_4 = rrrs_platform_point_x*rrrs_platform_point_x;
-        const real size_rrrs_t_5 = rrrs_platform_point_y*rrrs_platform_point_y;
-        const real size_rrrs_t_6 = rrrs_platform_point_z*rrrs_platform_point_z;
-        const real size_rrrs_t_7 = size_rrrs_t_4 + size_rrrs_t_5 + size_rrrs_t_6;
-        const real size_rrrs_t_8 = rrrs_joint2_offset_x*rrrs_joint2_offset_x + size_rrrs_t +
-            size_rrrs_t_2 + size_rrrs_t_3 + size_rrrs_t_7;
-        const real size_rrrs = root(size_rrrs_t_8);
+        /* (rrrs-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_rrrs_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x;
+        const real size_rrrs_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x;
+        const real size_rrrs_t_3 = R(6.696672622239999e-07) + size_rrrs_t + size_rrrs_t_2;
+        const real size_rrrs = root(size_rrrs_t_3);
         /* (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond
            joint 2 */
-        const real Kd_2_rrrs_t = R(0.5)*size_rrrs_t_2;
-        const real Kd_2_rrrs_t_2 = R(0.5)*size_rrrs_t_3;
+        const real Kd_2_rrrs_t = R(0.5)*size_rrrs_t;
+        const real Kd_2_rrrs_t_2 = R(0.5)*size_rrrs_t_2;
         /* (rrrs-K19) squared amplitude */
-        const real rho2_2_rrrs_t = size_rrrs*size_rrrs*size_rrrs_t_8;
+        const real rho2_2_rrrs_t = size_rrrs*size_rrrs*size_rrrs_t_3;
         /* (rrrs-K26) the vector from joint 2 to the connection point, resolved along link 2 */
-        const real inv_size_rrrs_t_6 = 1/size_rrrs_t_2;
+        const real inv_size_rrrs_t = 1/size_rrrs_t;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real inv_size_rrrs_t_7 = 1/size_rrrs_t_3;
-        /* (rrrs-G3) inertia tensor of link 1 about the origin of link 1 */
+        const real inv_size_rrrs_t_2 = 1/size_rrrs_t_2;
+        /* (rrrs-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x;
         const real J_1_rrrs_t_2 = J_1_rrrs_t +
             rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
             rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z;
         const real J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t -
             J_1_rrrs_t_2);
-        /* (rrrs-G5) inertia tensor of link 2 about the origin of link 2 */
+        /* (rrrs-G6) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_rrrs_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x;
         const real J_2_rrrs_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y;
         const real J_2_rrrs_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z;
@@ -908,9 +957,9 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
         const real J_2_rrrs_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_rrrs_t_3 -
             J_2_rrrs_t_4);
-        /* (rrrs-G6) connection point to the centre of mass of link 3 */
+        /* (rrrs-G7) connection point to the centre of mass of link 3 */
         const real rho_tip_3_rrrs_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x;
-        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        /* (rrrs-G9) inertia tensor of link 3 about the connection point */
         const real J_3_rrrs_t = rho_tip_3_rrrs_x*rho_tip_3_rrrs_x;
         const real J_3_rrrs_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y;
         const real J_3_rrrs_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z;
@@ -929,11 +978,11 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             J_3_rrrs_t_4);
         /* (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2 */
         const real Jc_2_rrrs_zz = J_2_rrrs_zz + J_3_rrrs_zz;
-        /* (rrrs-G4) first moment of link 2 about the origin of link 2 */
+        /* (rrrs-G5) first moment of link 2 about the origin of link 2 */
         const real h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass;
         const real h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass;
         const real h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass;
-        /* (rrrs-G7) first moment of link 3 about the connection point */
+        /* (rrrs-G8) first moment of link 3 about the connection point */
         const real h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass;
         const real h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass;
         const real h_3_rrrs_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass;
@@ -955,12 +1004,16 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real h_star_t_8 = rrrs_link3_mass*rrrs_platform_point_y;
         const real h_star_t_9 = rrrs_link3_mass*rrrs_platform_point_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_17 = rrrs_link3_mass*(size_rrrs_t_7 - size_rrrs_t_4);
-        const real J_star_t_18 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y;
-        const real J_star_t_19 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z;
-        const real J_star_t_20 = rrrs_link3_mass*(size_rrrs_t_7 - size_rrrs_t_5);
-        const real J_star_t_21 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z;
-        const real J_star_t_22 = rrrs_link3_mass*(size_rrrs_t_6 - size_rrrs_t_7);
+        const real J_star_t_21 = rrrs_platform_point_x*rrrs_platform_point_x;
+        const real J_star_t_22 = rrrs_platform_point_y*rrrs_platform_point_y;
+        const real J_star_t_23 = rrrs_platform_point_z*rrrs_platform_point_z;
+        const real J_star_t_24 = J_star_t_21 + J_star_t_22 + J_star_t_23;
+        const real J_star_t_25 = rrrs_link3_mass*(J_star_t_21 - J_star_t_24);
+        const real J_star_t_26 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y;
+        const real J_star_t_27 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z;
+        const real J_star_t_28 = rrrs_link3_mass*(J_star_t_22 - J_star_t_24);
+        const real J_star_t_29 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z;
+        const real J_star_t_30 = rrrs_link3_mass*(J_star_t_23 - J_star_t_24);
         /* (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r0_x_2 = gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy +
@@ -983,7 +1036,7 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         const real Sigma_3_rrrs_xx = trace_J_3_rrrs_rrrs - J_3_rrrs_xx;
         const real Sigma_3_rrrs_yy = trace_J_3_rrrs_rrrs - J_3_rrrs_yy;
         const real Sigma_3_rrrs_zz = trace_J_3_rrrs_rrrs - J_3_rrrs_zz;
-        /* (rrrs-G2) first moment of link 1 about the origin of link 1 */
+        /* (rrrs-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_rrrs_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass;
         const real h_1_rrrs_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass;
         const real h_1_rrrs_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass;
@@ -996,6 +1049,12 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
             rrrs_base_frame_yx*rrrs_base_point_y + rrrs_base_frame_zx*rrrs_base_point_z;
         const real potential_t = b_rrrs_r0_z*rrrs_link1_mass;
         const real potential_t_2 = rrrs_link2_mass*(b_rrrs_r0_z + rrrs_joint2_offset_x);
+        /* (rrrs-K5) squared amplitude */
+        const real inv_size_rrrs_t_3 = 1/size_rrrs_t_3;
+        /* (rrrs-K19) squared amplitude */
+        const real inv_rho2_2_rrrs_t_4 = 1/rho2_2_rrrs_t;
+        /* (rrrs-V7) reciprocal vector 1 */
+        const real inv_size_rrrs = 1/size_rrrs;
         model->J_1_rrrs_xx[leg] = J_1_rrrs_xx;
         model->J_2_rrrs_xx[leg] = J_2_rrrs_xx;
         model->J_2_rrrs_xy[leg] = J_2_rrrs_xy;
@@ -1037,9 +1096,12 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->h_3_rrrs_x[leg] = h_3_rrrs_x;
         model->h_3_rrrs_y[leg] = h_3_rrrs_y;
         model->h_3_rrrs_z[leg] = h_3_rrrs_z;
+        model->inv_rho2_2_rrrs_t_4[leg] = inv_rho2_2_rrrs_t_4;
         model->inv_rrrs_platform_joint_offset_x[leg] = inv_rrrs_platform_joint_offset_x;
-        model->inv_size_rrrs_t_6[leg] = inv_size_rrrs_t_6;
-        model->inv_size_rrrs_t_7[leg] = inv_size_rrrs_t_7;
+        model->inv_size_rrrs[leg] = inv_size_rrrs;
+        model->inv_size_rrrs_t[leg] = inv_size_rrrs_t;
+        model->inv_size_rrrs_t_2[leg] = inv_size_rrrs_t_2;
+        model->inv_size_rrrs_t_3[leg] = inv_size_rrrs_t_3;
         model->potential_t[leg] = potential_t;
         model->potential_t_2[leg] = potential_t_2;
         model->rho2_2_rrrs_t[leg] = rho2_2_rrrs_t;
@@ -1065,17 +1127,21 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
         model->rrrs_platform_point_y[leg] = rrrs_platform_point_y;
         model->rrrs_platform_point_z[leg] = rrrs_platform_point_z;
         model->size_rrrs[leg] = size_rrrs;
-        model->size_rrrs_t_8[leg] = size_rrrs_t_8;
+        model->size_rrrs_t_3[leg] = size_rrrs_t_3;
         total_rrrs += rrrs_link3_mass;
         total_rrrs_x += h_star_t_7;
         total_rrrs_y += h_star_t_8;
         total_rrrs_z += h_star_t_9;
-        total_rrrs_xx += J_star_t_17;
-        total_rrrs_xy += J_star_t_18;
-        total_rrrs_xz += J_star_t_19;
-        total_rrrs_yy += J_star_t_20;
-        total_rrrs_yz += J_star_t_21;
-        total_rrrs_zz += J_star_t_22;
+        total_rrrs_xx += J_star_t_25;
+        total_rrrs_xy += J_star_t_26;
+        total_rrrs_xz += J_star_t_27;
+        total_rrrs_yy += J_star_t_28;
+        total_rrrs_yz += J_star_t_29;
+        total_rrrs_zz += J_star_t_30;
+        total_rrrs_x_2 += rrrs_platform_point_x;
+        total_rrrs_y_2 += rrrs_platform_point_y;
+        total_rrrs_z_2 += rrrs_platform_point_z;
+        total_rrrs_2 += size_rrrs_t_3;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_rrrrs + total_rrrs;
@@ -1084,22 +1150,32 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     const real h_star_y = h_star_t_2 + total_rrrrs_y + total_rrrs_y;
     const real h_star_z = h_star_t_3 + total_rrrrs_z + total_rrrs_z;
     /* (L3) inertia tensor about the platform origin */
-    const real J_star_xx = platform_inertia_xx + total_rrrrs_xx + total_rrrs_xx - J_star_t_5;
+    const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrrs_xx - total_rrrs_xx;
     const real J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrrs_xy - total_rrrs_xy;
     const real J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrrs_xz - total_rrrs_xz;
-    const real J_star_yy = platform_inertia_yy + total_rrrs_yy - J_star_t_8 - total_rrrrs_yy;
+    const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrs_yy - total_rrrs_yy;
     const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrs_yz - total_rrrs_yz;
     const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrs_zz - total_rrrs_zz;
-    const real J_star_t_23 = J_star_xx - J_star_yy;
-    const real J_star_t_24 = R(0.5)*J_star_t_23;
-    const real J_star_t_25 = J_star_xx - J_star_zz;
-    const real J_star_t_26 = R(0.5)*J_star_t_25;
+    const real J_star_t_31 = J_star_xx - J_star_yy;
+    const real J_star_t_32 = R(0.5)*J_star_t_31;
+    const real J_star_t_33 = J_star_xx - J_star_zz;
+    const real J_star_t_34 = R(0.5)*J_star_t_33;
     /* (M4) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
     const real Z_p_t_3 = gravity_z*m_star;
-    model->J_star_t_24 = J_star_t_24;
-    model->J_star_t_26 = J_star_t_26;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_rrrrs_x_2 +
+        R(0.3333333333333333)*total_rrrs_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_rrrrs_y_2 +
+        R(0.3333333333333333)*total_rrrs_y_2;
+    const real b_c_z = R(0.3333333333333333)*total_rrrrs_z_2 +
+        R(0.3333333333333333)*total_rrrs_z_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = root(R(0.3333333333333333)*total_rrrrs_2 +
+        R(0.3333333333333333)*total_rrrs_2);
+    model->J_star_t_32 = J_star_t_32;
+    model->J_star_t_34 = J_star_t_34;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
@@ -1109,9 +1185,13 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
     model->Z_p_t_3 = Z_p_t_3;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return HYBRID_3RRRS_REDUNDANT_OK;
 }
@@ -1121,6 +1201,9 @@ int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, 
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -1130,23 +1213,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -1154,6 +1234,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -1182,47 +1263,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -1243,7 +1327,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -1320,9 +1404,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -1357,8 +1443,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -1398,6 +1484,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
@@ -1429,8 +1538,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     for (size_t i = 0; i < 3; ++i) {
         to[i] = X[i] + part*step[i];
     }
@@ -1479,8 +1588,8 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_3 = V[3*w + k];
         const real V_4 = V[4*w + k];
         const real V_5 = V[5*w + k];
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_t_26 = m->J_star_t_26;
+        const real J_star_t_32 = m->J_star_t_32;
+        const real J_star_t_34 = m->J_star_t_34;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -1535,12 +1644,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_24*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_24*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_24*R_zy;
-        const real J_star_t_4 = J_star_t_26*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_26*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_26*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_32*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_32*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_32*R_zy;
+        const real J_star_t_4 = J_star_t_34*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_34*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_34*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -1551,8 +1660,8 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
         const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
+        const real J_star_t_14 = J_star_t_6*R_zz - J_star_t_3*R_zy;
+        const real J_star_t_15 = 2*J_star_t_14 - J_star_xx;
         /* (M4) centripetal force and weight of the platform */
         const real Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z;
         const real Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x;
@@ -1612,7 +1721,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1695,8 +1804,8 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -1719,7 +1828,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         const real yd_2_rrrrs = V[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
@@ -1773,13 +1882,13 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -1840,7 +1949,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real axis_x_rrrrs_axes4_z =
             axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x;
-        /* (rrrrs-G10) inertia tensor of link 4 about the connection point */
+        /* (rrrrs-G11) inertia tensor of link 4 about the connection point */
         const real J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs;
         const real _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs;
         const real J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs;
@@ -1860,7 +1969,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs;
         const real _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs;
         const real _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs;
-        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        /* (rrrrs-G7) first moment of link 3 about the origin of link 3 */
         const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
         const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
         /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
@@ -2387,7 +2496,7 @@ INLINE void dynamics_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         o->entry[25][k] = H_a_3_rrrrs_y;
         o->entry[26][k] = H_a_3_rrrrs_z;
         o->entry[27][k] = -d1_qdd_3_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -2495,8 +2604,8 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -2517,7 +2626,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -2558,13 +2667,13 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -2611,7 +2720,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
         const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        /* (rrrs-G9) inertia tensor of link 3 about the connection point */
         const real J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs;
         const real _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs;
         const real J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs;
@@ -2952,7 +3061,7 @@ INLINE void dynamics_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -3078,7 +3187,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3;
         const real M_aa_yy = J_star_t_12 - total_rrrrs_yy_3 - total_rrrs_yy_3;
         const real M_aa_yz = J_star_t_13 + total_rrrrs_yz_3 + total_rrrs_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3;
+        const real M_aa_zz = -J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_rrrrs_x + total_rrrs_x;
         const real Z_t_y = Z_p_y + total_rrrrs_y + total_rrrs_y;
@@ -3230,8 +3339,8 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real X_4 = X[4*w + k];
         const real X_5 = X[5*w + k];
         const real X_6 = X[6*w + k];
-        const real J_star_t_24 = m->J_star_t_24;
-        const real J_star_t_26 = m->J_star_t_26;
+        const real J_star_t_32 = m->J_star_t_32;
+        const real J_star_t_34 = m->J_star_t_34;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -3271,12 +3380,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z;
         const real h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_24*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_24*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_24*R_zy;
-        const real J_star_t_4 = J_star_t_26*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_26*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_26*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_32*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_32*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_32*R_zy;
+        const real J_star_t_4 = J_star_t_34*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_34*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_34*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -3287,8 +3396,8 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real J_star_t_12 = 2*J_star_t_11 + J_star_xx;
         const real J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz -
             J_star_t_6*R_yz;
-        const real J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz;
-        const real J_star_t_15 = 2*J_star_t_14 + J_star_xx;
+        const real J_star_t_14 = J_star_t_6*R_zz - J_star_t_3*R_zy;
+        const real J_star_t_15 = 2*J_star_t_14 - J_star_xx;
         s->t_x[k] = t_x;
         s->t_y[k] = t_y;
         s->t_z[k] = t_z;
@@ -3310,7 +3419,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_12[k] = J_star_t_12;
         s->J_star_t_13[k] = J_star_t_13;
         s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3368,8 +3477,8 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -3391,7 +3500,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
@@ -3444,13 +3553,13 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -3511,7 +3620,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real axis_x_rrrrs_axes4_z =
             axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
             axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x;
-        /* (rrrrs-G10) inertia tensor of link 4 about the connection point */
+        /* (rrrrs-G11) inertia tensor of link 4 about the connection point */
         const real J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs;
         const real _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs;
         const real J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs;
@@ -3531,7 +3640,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs;
         const real _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs;
         const real _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs;
-        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        /* (rrrrs-G7) first moment of link 3 about the origin of link 3 */
         const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
         const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
         /* (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2 */
@@ -3735,7 +3844,7 @@ INLINE void M_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         o->entry[10][k] = M_ya_2_rrrrs_z;
         o->entry[11][k] = M_ya_2_rrrrs_z;
         o->entry[12][k] = d1_P_2_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -3807,8 +3916,8 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -3829,7 +3938,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -3870,13 +3979,13 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -3923,7 +4032,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
             axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z;
         const real axis_x_rrrs_axes3_z = axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
             axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x;
-        /* (rrrs-G8) inertia tensor of link 3 about the connection point */
+        /* (rrrs-G9) inertia tensor of link 3 about the connection point */
         const real J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs;
         const real _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs;
         const real J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs;
@@ -4047,7 +4156,7 @@ INLINE void M_legs_rrrs(const prepared *m, size_t leg, size_t legs, const M_valu
         o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_10 : M_aa_t_10;  /* total_rrrs_yy_3 */
         o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_11 : M_aa_t_11;  /* total_rrrs_yz_3 */
         o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_12 : M_aa_t_12;  /* total_rrrs_zz_3 */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -4141,7 +4250,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3;
         const real M_aa_yy = J_star_t_12 - total_rrrrs_yy_3 - total_rrrs_yy_3;
         const real M_aa_yz = J_star_t_13 + total_rrrrs_yz_3 + total_rrrs_yz_3;
-        const real M_aa_zz = J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3;
+        const real M_aa_zz = -J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[7*w + k] = M_tt_xy;
@@ -4381,7 +4490,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4447,8 +4556,8 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -4471,7 +4580,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         const real yd_2_rrrrs = V[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
@@ -4525,13 +4634,13 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -4886,7 +4995,7 @@ INLINE void Z_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_rrrrs_y_2 */
         o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_rrrrs_z_2 */
         o->entry[0][k] = P_2_rrrrs_o;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -4956,8 +5065,8 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -4978,7 +5087,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -5019,13 +5128,13 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -5264,7 +5373,7 @@ INLINE void Z_legs_rrrs(const prepared *m, size_t leg, size_t legs, const Z_valu
         o->sum[3][k] = add ? o->sum[3][k] + Z_a_t_4 : Z_a_t_4;  /* total_rrrs_x_2 */
         o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_5 : Z_a_t_5;  /* total_rrrs_y_2 */
         o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_6 : Z_a_t_6;  /* total_rrrs_z_2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -5445,7 +5554,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -5471,8 +5580,8 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
         const real branch_1_rrrrs = m->branch_1_rrrrs[i];
         const real branch_3_rrrrs = m->branch_3_rrrrs[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -5494,7 +5603,7 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
@@ -5547,13 +5656,13 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
         /* (rrrrs-K25) cosine of the angle of joint 3 from its reference direction */
@@ -5652,7 +5761,7 @@ INLINE void H_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, c
         o->entry[11][k] = H_a_3_rrrrs_y;
         o->entry[12][k] = H_a_3_rrrrs_z;
         o->entry[13][k] = -d1_qdd_3_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -5704,8 +5813,8 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
         const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
         const real branch_1_rrrs = m->branch_1_rrrs[i];
         const real branch_2_rrrs = m->branch_2_rrrs[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -5726,7 +5835,7 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -5767,13 +5876,13 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
         /* (rrrs-K22) cosine of the angle of joint 2 from its reference direction */
@@ -5850,7 +5959,7 @@ INLINE void H_legs_rrrs(const prepared *m, size_t leg, size_t legs, const H_valu
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -6091,7 +6200,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -6167,8 +6276,8 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -6191,7 +6300,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         const real yd_2_rrrrs = V[(6)*w + j];
         const real ydd_2_rrrrs = A[(6)*w + j];
@@ -6246,13 +6355,13 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -6638,7 +6747,7 @@ INLINE void required_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t 
         o->entry[12][k] = H_a_3_rrrrs_y;
         o->entry[13][k] = H_a_3_rrrrs_z;
         o->entry[14][k] = -d1_qdd_3_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -6732,8 +6841,8 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -6754,7 +6863,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -6795,13 +6904,13 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -7068,7 +7177,7 @@ INLINE void required_legs_rrrs(const prepared *m, size_t leg, size_t legs, const
         o->entry[9][k] = H_a_2_rrrs_x;
         o->entry[10][k] = H_a_2_rrrs_y;
         o->entry[11][k] = H_a_2_rrrs_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -7252,7 +7361,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -7279,8 +7388,8 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t le
         const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
         const real branch_1_rrrrs = m->branch_1_rrrrs[i];
         const real branch_3_rrrrs = m->branch_3_rrrrs[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -7301,7 +7410,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t le
         const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real S_rrrrs_x = t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
@@ -7349,7 +7458,7 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t le
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K25) cosine of the angle of joint 3 from its reference direction */
         const real inv_rho2_3_rrrrs = 1/rho2_3_rrrrs;
@@ -7364,13 +7473,13 @@ INLINE void inverse_kinematics_legs_rrrrs(const prepared *m, size_t w, size_t le
             Ks_3_rrrrs*root_3_rrrrs));
         /* (rrrrs-K34) displacement of joint 4 */
         const real q_4_rrrrs =
-            angle(-inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x,
-            inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x);
+            angle(-inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x,
+            inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x);
         o->entry[0][k] = q_1_rrrrs;
         o->entry[1][k] = y_2_extra_rrrrs;
         o->entry[2][k] = q_3_rrrrs;
         o->entry[3][k] = q_4_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t);
         o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
@@ -7411,8 +7520,8 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
         const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
         const real branch_1_rrrs = m->branch_1_rrrs[i];
         const real branch_2_rrrs = m->branch_2_rrrs[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -7432,7 +7541,7 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real S_rrrs_x = t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z - rrrs_base_point_x;
@@ -7470,7 +7579,7 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K22) cosine of the angle of joint 2 from its reference direction */
         const real inv_rho2_2_rrrs = 1/rho2_2_rrrs;
@@ -7484,12 +7593,12 @@ INLINE void inverse_kinematics_legs_rrrs(const prepared *m, size_t leg, size_t l
             -inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs));
         /* (rrrs-K31) displacement of joint 3 */
         const real q_3_rrrs =
-            angle(-inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
-            inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x);
+            angle(-inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
+            inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x);
         o->entry[0][k] = q_1_rrrs;
         o->entry[1][k] = q_2_rrrs;
         o->entry[2][k] = q_3_rrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t);
         o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
@@ -7632,7 +7741,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -7666,8 +7775,8 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size
         const real branch_1_rrrrs = m->branch_1_rrrrs[i];
         const real branch_3_rrrrs = m->branch_3_rrrrs[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -7689,7 +7798,7 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         const real yd_2_rrrrs = V[(6)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
@@ -7743,13 +7852,13 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -7846,7 +7955,7 @@ INLINE void joint_rates_legs_rrrrs(const prepared *m, size_t w, size_t leg, size
         o->entry[1][k] = yd_2_rrrrs;
         o->entry[2][k] = -qd_3_rrrrs;
         o->entry[3][k] = qd_4_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -7896,8 +8005,8 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
         const real branch_1_rrrs = m->branch_1_rrrs[i];
         const real branch_2_rrrs = m->branch_2_rrrs[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -7918,7 +8027,7 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -7959,13 +8068,13 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -8027,7 +8136,7 @@ INLINE void joint_rates_legs_rrrs(const prepared *m, size_t leg, size_t legs, co
         o->entry[0][k] = qd_1_rrrs;
         o->entry[1][k] = -qd_2_rrrs;
         o->entry[2][k] = qd_3_rrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -8195,7 +8304,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -8235,8 +8344,8 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
         const real branch_1_rrrrs = m->branch_1_rrrrs[i];
         const real branch_3_rrrrs = m->branch_3_rrrrs[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -8258,7 +8367,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         const real yd_2_rrrrs = V[(6)*w + j];
         const real ydd_2_rrrrs = A[(6)*w + j];
@@ -8313,13 +8422,13 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -8505,7 +8614,7 @@ INLINE void joint_accelerations_legs_rrrrs(const prepared *m, size_t w, size_t l
         o->entry[1][k] = ydd_2_rrrrs;
         o->entry[2][k] = -qdd_3_rrrrs;
         o->entry[3][k] = qdd_4_rrrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -8562,8 +8671,8 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
         const real branch_1_rrrs = m->branch_1_rrrs[i];
         const real branch_2_rrrs = m->branch_2_rrrs[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -8584,7 +8693,7 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -8625,13 +8734,13 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -8761,7 +8870,7 @@ INLINE void joint_accelerations_legs_rrrs(const prepared *m, size_t leg, size_t 
         o->entry[0][k] = qdd_1_rrrs;
         o->entry[1][k] = -qdd_2_rrrs;
         o->entry[2][k] = qdd_3_rrrs;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -8930,7 +9039,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -9006,8 +9115,8 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
         const real inv_rrrrs_platform_joint_offset_x = m->inv_rrrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
         const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
         const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
@@ -9031,7 +9140,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
         const real size_rrrrs = m->size_rrrrs[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         const real yd_2_rrrrs = V[(6)*w + j];
         const real ydd_2_rrrrs = A[(6)*w + j];
@@ -9086,13 +9195,13 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-V2) from joint 3 to the connection point, along the links */
         const real r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs;
         const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
@@ -9437,7 +9546,7 @@ INLINE void legs_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs
         o->entry[6][k] = -w_3_rrrrs_t;
         o->entry[7][k] = -w_3_rrrrs_t_2;
         o->entry[8][k] = -w_3_rrrrs_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
             UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
             UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
@@ -9525,8 +9634,8 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
         const real inv_rrrs_platform_joint_offset_x = m->inv_rrrs_platform_joint_offset_x[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
         const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
         const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
@@ -9548,7 +9657,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
         const real size_rrrs = m->size_rrrs[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z;
@@ -9589,13 +9698,13 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-V2) from joint 2 to the connection point, along the links */
         const real r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs;
         const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
@@ -9842,7 +9951,7 @@ INLINE void legs_legs_rrrs(const prepared *m, size_t leg, size_t legs, const leg
         o->entry[6][k] = -w_2_rrrs_t;
         o->entry[7][k] = -w_2_rrrs_t_2;
         o->entry[8][k] = -w_2_rrrs_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
             UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
             > TOLERANCE*size_rrrs);
@@ -9975,7 +10084,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_5[k] = potential_t_5;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -10020,8 +10129,8 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real h_4_rrrrs_x = m->h_4_rrrrs_x[i];
         const real h_4_rrrrs_y = m->h_4_rrrrs_y[i];
         const real h_4_rrrrs_z = m->h_4_rrrrs_z[i];
-        const real inv_size_rrrrs_t_7 = m->inv_size_rrrrs_t_7[i];
-        const real inv_size_rrrrs_t_8 = m->inv_size_rrrrs_t_8[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
         const real potential_t_3 = m->potential_t_3[i];
         const real potential_t_4 = m->potential_t_4[i];
         const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
@@ -10047,7 +10156,7 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
         const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
         const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
-        const real size_rrrrs_t_8 = m->size_rrrrs_t_8[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
         const real y_2_extra_rrrrs = X[(7)*w + j];
         /* (rrrrs-K1) from the base point to the connection point */
         const real S_rrrrs_x = t_x + R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
@@ -10095,13 +10204,13 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         /* (rrrrs-K24) root, with the sign of the branch */
         const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
         /* (rrrrs-K30) from the origin of joint 4 to the connection point */
-        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x -
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
             rrrrs_joint4_offset_x;
         /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
-        const real c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
         /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
         const real s_4_rrrrs =
-            inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
         /* (rrrrs-K25) cosine of the angle of joint 3 from its reference direction */
         const real inv_rho2_3_rrrrs = 1/rho2_3_rrrrs;
         const real c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs);
@@ -10112,13 +10221,13 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
         const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
         /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
         const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
-        /* (rrrrs-G6) first moment of link 3 about the origin of link 3 */
+        /* (rrrrs-G7) first moment of link 3 about the origin of link 3 */
         const real h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs;
         const real h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs;
         /* (V1) potential energy */
         const real b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs;
         const real b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs;
-        /* (rrrrs-G9) first moment of link 4 about the connection point */
+        /* (rrrrs-G10) first moment of link 4 about the connection point */
         const real h_4_rrrrs_r0_x = c_4_rrrrs*h_4_rrrrs_x + h_4_rrrrs_y*s_4_rrrrs;
         const real h_4_rrrrs_r0_y = c_4_rrrrs*h_4_rrrrs_y - h_4_rrrrs_x*s_4_rrrrs;
         const real h_4_rrrrs_r1_x = c_3_rrrrs*h_4_rrrrs_r0_x - h_4_rrrrs_r0_y*s_3_rrrrs;
@@ -10138,7 +10247,7 @@ INLINE void potential_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t
             h_3_rrrrs_z + h_4_rrrrs_z + b_rrrrs_r1_x*rrrrs_link1_mass +
             b_rrrrs_r1_x*rrrrs_link2_mass + b_rrrrs_r1_x*rrrrs_link3_mass);
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_10 : potential_t_10;  /* total_rrrrs */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
             UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t);
         o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
     }
@@ -10189,8 +10298,8 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
         const real h_3_rrrs_x = m->h_3_rrrs_x[i];
         const real h_3_rrrs_y = m->h_3_rrrs_y[i];
         const real h_3_rrrs_z = m->h_3_rrrs_z[i];
-        const real inv_size_rrrs_t_6 = m->inv_size_rrrs_t_6[i];
-        const real inv_size_rrrs_t_7 = m->inv_size_rrrs_t_7[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
         const real potential_t = m->potential_t[i];
         const real potential_t_2 = m->potential_t_2[i];
         const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
@@ -10214,7 +10323,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
         const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
         const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
         const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
-        const real size_rrrs_t_8 = m->size_rrrs_t_8[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
         /* (rrrs-K1) from the base point to the connection point */
         const real S_rrrs_x = t_x + R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
             R_xz*rrrs_platform_point_z - rrrs_base_point_x;
@@ -10252,13 +10361,13 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (rrrs-K21) root, with the sign of the branch */
         const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
         /* (rrrs-K27) from the origin of joint 3 to the connection point */
-        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x -
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
             rrrs_joint3_offset_x;
         /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
-        const real c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
         /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
         const real s_3_rrrs =
-            inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
         /* (rrrs-K22) cosine of the angle of joint 2 from its reference direction */
         const real inv_rho2_2_rrrs = 1/rho2_2_rrrs;
         const real c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs);
@@ -10272,7 +10381,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
         /* (V1) potential energy */
         const real b_rrrs_r1_x = b_rrrs_r0_y*s_1_rrrs - b_rrrs_r0_x*c_1_rrrs;
         const real b_rrrs_r1_y = -b_rrrs_r0_x*s_1_rrrs - b_rrrs_r0_y*c_1_rrrs;
-        /* (rrrs-G7) first moment of link 3 about the connection point */
+        /* (rrrs-G8) first moment of link 3 about the connection point */
         const real h_3_rrrs_r0_x = c_3_rrrs*h_3_rrrs_x + h_3_rrrs_y*s_3_rrrs;
         const real h_3_rrrs_r0_y = c_3_rrrs*h_3_rrrs_y - h_3_rrrs_x*s_3_rrrs;
         /* (V1) potential energy */
@@ -10285,7 +10394,7 @@ INLINE void potential_legs_rrrs(const prepared *m, size_t leg, size_t legs, cons
             h_3_rrrs_r0_x*s_2_rrrs) + (g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2)*(h_1_rrrs_z +
             h_2_rrrs_z + h_3_rrrs_z + b_rrrs_r1_x*rrrs_link1_mass + b_rrrs_r1_x*rrrs_link2_mass);
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_7 : potential_t_7;  /* total_rrrs */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_8) +
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
             UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t);
         o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
     }
@@ -10365,6 +10474,630 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_after(w, s, potential);
 }
 
+/* ---- condition: 369 mul, 207 add, 12 div, 13 sqrt, 2 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[2][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[16][8], unreachable[8], singular[8];
+} condition_results_rrrrs;
+typedef struct {
+    real sum[1][8], entry[14][8], unreachable[8], singular[8];
+} condition_results_rrrs;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_rrrrs(const prepared *m, size_t w, size_t leg, size_t legs, const
+    condition_values *s, size_t states, size_t count, int add, const real *X,
+    condition_results_rrrrs *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real Kd_3_rrrrs_t = m->Kd_3_rrrrs_t[i];
+        const real Kd_3_rrrrs_t_2 = m->Kd_3_rrrrs_t_2[i];
+        const real branch_1_rrrrs = m->branch_1_rrrrs[i];
+        const real branch_3_rrrrs = m->branch_3_rrrrs[i];
+        const real inv_rho2_3_rrrrs_t_4 = m->inv_rho2_3_rrrrs_t_4[i];
+        const real inv_size_rrrrs = m->inv_size_rrrrs[i];
+        const real inv_size_rrrrs_t_2 = m->inv_size_rrrrs_t_2[i];
+        const real inv_size_rrrrs_t_3 = m->inv_size_rrrrs_t_3[i];
+        const real inv_size_rrrrs_t_4 = m->inv_size_rrrrs_t_4[i];
+        const real rho2_3_rrrrs_t = m->rho2_3_rrrrs_t[i];
+        const real rrrrs_base_frame_xx = m->rrrrs_base_frame_xx[i];
+        const real rrrrs_base_frame_xy = m->rrrrs_base_frame_xy[i];
+        const real rrrrs_base_frame_xz = m->rrrrs_base_frame_xz[i];
+        const real rrrrs_base_frame_yx = m->rrrrs_base_frame_yx[i];
+        const real rrrrs_base_frame_yy = m->rrrrs_base_frame_yy[i];
+        const real rrrrs_base_frame_yz = m->rrrrs_base_frame_yz[i];
+        const real rrrrs_base_frame_zx = m->rrrrs_base_frame_zx[i];
+        const real rrrrs_base_frame_zy = m->rrrrs_base_frame_zy[i];
+        const real rrrrs_base_frame_zz = m->rrrrs_base_frame_zz[i];
+        const real rrrrs_base_point_x = m->rrrrs_base_point_x[i];
+        const real rrrrs_base_point_y = m->rrrrs_base_point_y[i];
+        const real rrrrs_base_point_z = m->rrrrs_base_point_z[i];
+        const real rrrrs_joint2_offset_x = m->rrrrs_joint2_offset_x[i];
+        const real rrrrs_joint3_offset_x = m->rrrrs_joint3_offset_x[i];
+        const real rrrrs_joint4_offset_x = m->rrrrs_joint4_offset_x[i];
+        const real rrrrs_platform_joint_offset_x = m->rrrrs_platform_joint_offset_x[i];
+        const real rrrrs_platform_point_x = m->rrrrs_platform_point_x[i];
+        const real rrrrs_platform_point_y = m->rrrrs_platform_point_y[i];
+        const real rrrrs_platform_point_z = m->rrrrs_platform_point_z[i];
+        const real size_rrrrs = m->size_rrrrs[i];
+        const real size_rrrrs_t_3 = m->size_rrrrs_t_3[i];
+        const real y_2_extra_rrrrs = X[(7)*w + j];
+        /* (rrrrs-K1) from the base point to the connection point */
+        const real q_rrrrs_in_base_x = R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y +
+            R_xz*rrrrs_platform_point_z;
+        const real q_rrrrs_in_base_y = R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y +
+            R_yz*rrrrs_platform_point_z;
+        const real q_rrrrs_in_base_z = R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y +
+            R_zz*rrrrs_platform_point_z;
+        const real S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x;
+        const real S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y;
+        const real S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z;
+        /* (rrrrs-K4) component along the reference direction */
+        const real px_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy +
+            S_rrrrs_z*rrrrs_base_frame_zy;
+        /* (rrrrs-K5) component across the reference direction */
+        const real py_1_rrrrs = S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz +
+            S_rrrrs_z*rrrrs_base_frame_zz;
+        /* (rrrrs-K7) squared amplitude */
+        const real rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs;
+        /* (rrrrs-K9) root, with the sign of the branch */
+        const real root_1_rrrrs = branch_1_rrrrs*root(rho2_1_rrrrs);
+        /* (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_rrrrs_t = S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx +
+            S_rrrrs_z*rrrrs_base_frame_zx;
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
+        const real x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x;
+        /* (rrrrs-K2) cosine of the angle of joint 2 from its reference direction */
+        const real c_2_rrrrs_t = sine(y_2_extra_rrrrs);
+        /* (rrrrs-K3) sine of the angle of joint 2 from its reference direction */
+        const real s_2_rrrrs = cosine(y_2_extra_rrrrs);
+        /* (rrrrs-K14) from the origin of joint 2 to the connection point */
+        const real x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs;
+        const real x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z;
+        const real x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs;
+        const real x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z;
+        /* (rrrrs-K15) from the origin of joint 3 to the connection point */
+        const real x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x;
+        /* (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 3 */
+        const real Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x;
+        const real Kd_3_rrrrs = Kd_3_rrrrs_t + R(0.5)*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2;
+        /* (rrrrs-K20) factor of the cosine in the equation of joint 3 */
+        const real Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x;
+        /* (rrrrs-K21) factor of the sine in the equation of joint 3 */
+        const real Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y;
+        /* (rrrrs-K22) squared amplitude */
+        const real rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs;
+        /* (rrrrs-K23) discriminant */
+        const real disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs;
+        /* (rrrrs-K24) root, with the sign of the branch */
+        const real root_3_rrrrs = branch_3_rrrrs*root(disc_3_rrrrs);
+        /* (rrrrs-K30) from the origin of joint 4 to the connection point */
+        const real x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x -
+            rrrrs_joint4_offset_x;
+        /* (rrrrs-K32) cosine of the angle of joint 4 from its reference direction */
+        const real c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x;
+        /* (rrrrs-K33) sine of the angle of joint 4 from its reference direction */
+        const real s_4_rrrrs =
+            inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x;
+        /* (rrrrs-V2) from joint 3 to the connection point, along the links */
+        const real r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x;
+        /* (rrrrs-K25) cosine of the angle of joint 3 from its reference direction */
+        const real inv_rho2_3_rrrrs = 1/rho2_3_rrrrs;
+        const real c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs);
+        /* (rrrrs-K26) sine of the angle of joint 3 from its reference direction */
+        const real s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs);
+        /* (rrrrs-V5) velocity of the connection point per rate of joint 1 */
+        const real e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs;
+        const real e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs;
+        /* (rrrrs-V4) from joint 1 to the connection point, along the links */
+        const real r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t;
+        const real r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t;
+        const real r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs;
+        const real r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs;
+        /* (rrrrs-V5) velocity of the connection point per rate of joint 1 */
+        const real v_1_rrrrs_z = (c_4_rrrrs*e_1_rrrrs_r2_x -
+            e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y + r_1_rrrrs_r2_x*s_4_rrrrs) -
+            (c_4_rrrrs*e_1_rrrrs_r2_y + e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x -
+            r_1_rrrrs_r2_y*s_4_rrrrs);
+        /* (rrrrs-V2) from joint 3 to the connection point, along the links */
+        const real r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs -
+            c_4_rrrrs*rrrrs_platform_joint_offset_x*s_4_rrrrs;
+        /* (rrrrs-K10) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rho2_1_rrrrs = 1/rho2_1_rrrrs;
+        const real c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs;
+        /* (rrrrs-K11) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs;
+        /* (rrrrs-V9) reciprocal vector 1 */
+        const real axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs -
+            c_1_rrrrs*rrrrs_base_frame_xy;
+        const real axis_z_rrrrs_axes4_in_base_y = rrrrs_base_frame_yz*s_1_rrrrs -
+            c_1_rrrrs*rrrrs_base_frame_yy;
+        const real axis_z_rrrrs_axes4_in_base_z = rrrrs_base_frame_zz*s_1_rrrrs -
+            c_1_rrrrs*rrrrs_base_frame_zy;
+        const real axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs;
+        const real axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs;
+        const real axis_y_rrrrs_axes4_r2_x = -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t -
+            axis_y_rrrrs_axes4_r1_y*s_2_rrrrs;
+        const real axis_y_rrrrs_axes4_r2_y = axis_y_rrrrs_axes4_r1_x*s_2_rrrrs -
+            axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t;
+        const real w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs;
+        const real w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs;
+        const real axis_y_rrrrs_axes4_in_base_x = axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx -
+            rrrrs_base_frame_xy*w_1_rrrrs_t - rrrrs_base_frame_xz*w_1_rrrrs_t_2;
+        const real axis_y_rrrrs_axes4_in_base_y = axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx -
+            rrrrs_base_frame_yy*w_1_rrrrs_t - rrrrs_base_frame_yz*w_1_rrrrs_t_2;
+        const real axis_y_rrrrs_axes4_in_base_z = axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx -
+            rrrrs_base_frame_zy*w_1_rrrrs_t - rrrrs_base_frame_zz*w_1_rrrrs_t_2;
+        const real inv_v_1_rrrrs_z = 1/v_1_rrrrs_z;
+        /* (rrrrs-V10) reciprocal vector 2 */
+        const real inv_r_3_rrrrs_r0_y = 1/r_3_rrrrs_r0_y;
+        /* (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1 */
+        const real d1_qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*(c_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_y -
+            s_3_rrrrs*x_2_rrrrs_r1_x) + s_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_x +
+            s_3_rrrrs*x_2_rrrrs_r1_y));
+        /* (rrrrs-V9) reciprocal vector 1 */
+        const real w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z;
+        const real w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z;
+        const real w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real H_a_1_rrrrs_x = q_rrrrs_in_base_y*w_1_rrrrs_t_5 -
+            q_rrrrs_in_base_z*w_1_rrrrs_t_4;
+        const real H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 -
+            q_rrrrs_in_base_x*w_1_rrrrs_t_5;
+        const real H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 -
+            q_rrrrs_in_base_y*w_1_rrrrs_t_3;
+        /* (rrrrs-V10) reciprocal vector 2 */
+        const real w_3_rrrrs_t =
+            inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
+            axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y);
+        const real w_3_rrrrs_t_2 =
+            inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
+            axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z);
+        const real w_3_rrrrs_t_3 =
+            inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
+            axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x);
+        /* (M10) moment of the column's unit force about the platform origin */
+        const real H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 -
+            q_rrrrs_in_base_y*w_3_rrrrs_t_3;
+        const real H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 -
+            q_rrrrs_in_base_z*w_3_rrrrs_t;
+        const real H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t -
+            q_rrrrs_in_base_x*w_3_rrrrs_t_2;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t = b_c_x - rrrrs_platform_point_x;
+        const real spread_t_2 = b_c_y - rrrrs_platform_point_y;
+        const real spread_t_3 = b_c_z - rrrrs_platform_point_z;
+        const real spread_t_4 = spread_t*spread_t + spread_t_2*spread_t_2 + spread_t_3*spread_t_3;
+        /* (rrrrs-K7) squared amplitude */
+        const real pivot_size = magnitude(rho2_1_rrrrs);
+        /* (rrrrs-K22) squared amplitude */
+        const real pivot_size_2 = magnitude(rho2_3_rrrrs);
+        /* (rrrrs-V9) reciprocal vector 1 */
+        const real pivot_size_3 = magnitude(v_1_rrrrs_z);
+        const real pivot_size_4 = magnitude(r_3_rrrrs_r0_y);
+        /* (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(lesser(lesser(root(inv_rho2_3_rrrrs_t_4*pivot_size_2),
+            inv_size_rrrrs*pivot_size_3), inv_size_rrrrs*pivot_size_4),
+            root(inv_size_rrrrs_t_4*pivot_size));
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_4 : spread_t_4;  /* total_rrrrs */
+        o->entry[0][k] = w_1_rrrrs_t_3;
+        o->entry[1][k] = w_1_rrrrs_t_4;
+        o->entry[2][k] = w_1_rrrrs_t_5;
+        o->entry[3][k] = H_a_1_rrrrs_x;
+        o->entry[4][k] = H_a_1_rrrrs_y;
+        o->entry[5][k] = H_a_1_rrrrs_z;
+        o->entry[6][k] = 1;
+        o->entry[7][k] = -w_3_rrrrs_t;
+        o->entry[8][k] = -w_3_rrrrs_t_2;
+        o->entry[9][k] = -w_3_rrrrs_t_3;
+        o->entry[10][k] = H_a_3_rrrrs_x;
+        o->entry[11][k] = H_a_3_rrrrs_y;
+        o->entry[12][k] = H_a_3_rrrrs_z;
+        o->entry[13][k] = -d1_qdd_3_rrrrs;
+        o->entry[14][k] = least_pivots;
+        o->entry[15][k] = disc_3_rrrrs;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrrs) > TOLERANCE*TOLERANCE*size_rrrrs_t_3) +
+            UNLESS(magnitude(rho2_3_rrrrs) > TOLERANCE*TOLERANCE*rho2_3_rrrrs_t) +
+            UNLESS(magnitude(v_1_rrrrs_z) > TOLERANCE*size_rrrrs) +
+            UNLESS(magnitude(-r_3_rrrrs_r0_y) > TOLERANCE*size_rrrrs);
+        o->unreachable[k] = UNLESS(disc_3_rrrrs >= 0);
+    }
+}
+
+INLINE void condition_place_rrrrs(size_t w, const condition_results_rrrrs *o, size_t first, real
+    *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(0)*w + k] = o->entry[0][first + k];
+        H[(7)*w + k] = o->entry[1][first + k];
+        H[(14)*w + k] = o->entry[2][first + k];
+        H[(21)*w + k] = o->entry[3][first + k];
+        H[(28)*w + k] = o->entry[4][first + k];
+        H[(35)*w + k] = o->entry[5][first + k];
+        H[(43)*w + k] = o->entry[6][first + k];
+        H[(2)*w + k] = o->entry[7][first + k];
+        H[(9)*w + k] = o->entry[8][first + k];
+        H[(16)*w + k] = o->entry[9][first + k];
+        H[(23)*w + k] = o->entry[10][first + k];
+        H[(30)*w + k] = o->entry[11][first + k];
+        H[(37)*w + k] = o->entry[12][first + k];
+        H[(44)*w + k] = o->entry[13][first + k];
+        pivots[(0)*w + k] = o->entry[14][first + k];
+        reach[(0)*w + k] = o->entry[15][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_legs_rrrs(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rrrs *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real Kd_2_rrrs_t = m->Kd_2_rrrs_t[i];
+        const real Kd_2_rrrs_t_2 = m->Kd_2_rrrs_t_2[i];
+        const real branch_1_rrrs = m->branch_1_rrrs[i];
+        const real branch_2_rrrs = m->branch_2_rrrs[i];
+        const real inv_rho2_2_rrrs_t_4 = m->inv_rho2_2_rrrs_t_4[i];
+        const real inv_size_rrrs = m->inv_size_rrrs[i];
+        const real inv_size_rrrs_t = m->inv_size_rrrs_t[i];
+        const real inv_size_rrrs_t_2 = m->inv_size_rrrs_t_2[i];
+        const real inv_size_rrrs_t_3 = m->inv_size_rrrs_t_3[i];
+        const real rho2_2_rrrs_t = m->rho2_2_rrrs_t[i];
+        const real rrrs_base_frame_xx = m->rrrs_base_frame_xx[i];
+        const real rrrs_base_frame_xy = m->rrrs_base_frame_xy[i];
+        const real rrrs_base_frame_xz = m->rrrs_base_frame_xz[i];
+        const real rrrs_base_frame_yx = m->rrrs_base_frame_yx[i];
+        const real rrrs_base_frame_yy = m->rrrs_base_frame_yy[i];
+        const real rrrs_base_frame_yz = m->rrrs_base_frame_yz[i];
+        const real rrrs_base_frame_zx = m->rrrs_base_frame_zx[i];
+        const real rrrs_base_frame_zy = m->rrrs_base_frame_zy[i];
+        const real rrrs_base_frame_zz = m->rrrs_base_frame_zz[i];
+        const real rrrs_base_point_x = m->rrrs_base_point_x[i];
+        const real rrrs_base_point_y = m->rrrs_base_point_y[i];
+        const real rrrs_base_point_z = m->rrrs_base_point_z[i];
+        const real rrrs_joint2_offset_x = m->rrrs_joint2_offset_x[i];
+        const real rrrs_joint3_offset_x = m->rrrs_joint3_offset_x[i];
+        const real rrrs_platform_joint_offset_x = m->rrrs_platform_joint_offset_x[i];
+        const real rrrs_platform_point_x = m->rrrs_platform_point_x[i];
+        const real rrrs_platform_point_y = m->rrrs_platform_point_y[i];
+        const real rrrs_platform_point_z = m->rrrs_platform_point_z[i];
+        const real size_rrrs = m->size_rrrs[i];
+        const real size_rrrs_t_3 = m->size_rrrs_t_3[i];
+        /* (rrrs-K1) from the base point to the connection point */
+        const real q_rrrs_in_base_x = R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y +
+            R_xz*rrrs_platform_point_z;
+        const real q_rrrs_in_base_y = R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y +
+            R_yz*rrrs_platform_point_z;
+        const real q_rrrs_in_base_z = R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y +
+            R_zz*rrrs_platform_point_z;
+        const real S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x;
+        const real S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y;
+        const real S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z;
+        /* (rrrs-K2) component along the reference direction */
+        const real px_1_rrrs = S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy +
+            S_rrrs_z*rrrs_base_frame_zy;
+        /* (rrrs-K3) component across the reference direction */
+        const real py_1_rrrs = S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz +
+            S_rrrs_z*rrrs_base_frame_zz;
+        /* (rrrs-K5) squared amplitude */
+        const real rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs;
+        /* (rrrs-K7) root, with the sign of the branch */
+        const real root_1_rrrs = branch_1_rrrs*root(rho2_1_rrrs);
+        /* (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_rrrs_t = S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx +
+            S_rrrs_z*rrrs_base_frame_zx;
+        /* (rrrs-K12) from the origin of joint 2 to the connection point */
+        const real x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x;
+        /* (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 2 */
+        const real Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z;
+        const real Kd_2_rrrs = Kd_2_rrrs_t + R(0.5)*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2;
+        /* (rrrs-K17) factor of the cosine in the equation of joint 2 */
+        const real Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x;
+        /* (rrrs-K18) factor of the sine in the equation of joint 2 */
+        const real Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z;
+        /* (rrrs-K19) squared amplitude */
+        const real rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs;
+        /* (rrrs-K20) discriminant */
+        const real disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs;
+        /* (rrrs-K21) root, with the sign of the branch */
+        const real root_2_rrrs = branch_2_rrrs*root(disc_2_rrrs);
+        /* (rrrs-K27) from the origin of joint 3 to the connection point */
+        const real x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x -
+            rrrs_joint3_offset_x;
+        /* (rrrs-K29) cosine of the angle of joint 3 from its reference direction */
+        const real c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x;
+        /* (rrrs-K30) sine of the angle of joint 3 from its reference direction */
+        const real s_3_rrrs =
+            inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x;
+        /* (rrrs-V2) from joint 2 to the connection point, along the links */
+        const real r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x;
+        /* (rrrs-K22) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rho2_2_rrrs = 1/rho2_2_rrrs;
+        const real c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs);
+        /* (rrrs-K23) sine of the angle of joint 2 from its reference direction */
+        const real s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs);
+        /* (rrrs-V4) velocity of the connection point per rate of joint 1 */
+        const real e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs;
+        const real e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs;
+        /* (rrrs-V3) from joint 1 to the connection point, along the links */
+        const real r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t;
+        const real r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs;
+        /* (rrrs-V4) velocity of the connection point per rate of joint 1 */
+        const real v_1_rrrs_z = e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
+            e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs);
+        /* (rrrs-V2) from joint 2 to the connection point, along the links */
+        const real r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs -
+            c_3_rrrs*rrrs_platform_joint_offset_x*s_3_rrrs;
+        /* (rrrs-K8) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rho2_1_rrrs = 1/rho2_1_rrrs;
+        const real c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs;
+        /* (rrrs-K9) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs;
+        /* (rrrs-V7) reciprocal vector 1 */
+        const real axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs -
+            c_1_rrrs*rrrs_base_frame_xy;
+        const real axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs -
+            c_1_rrrs*rrrs_base_frame_yy;
+        const real axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs -
+            c_1_rrrs*rrrs_base_frame_zy;
+        const real w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs;
+        const real w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x;
+        const real axis_y_rrrs_axes3_in_base_x = e_1_rrrs_r2_y*rrrs_base_frame_xx +
+            rrrs_base_frame_xy*w_1_rrrs_t + rrrs_base_frame_xz*w_1_rrrs_t_2;
+        const real axis_y_rrrs_axes3_in_base_y = e_1_rrrs_r2_y*rrrs_base_frame_yx +
+            rrrs_base_frame_yy*w_1_rrrs_t + rrrs_base_frame_yz*w_1_rrrs_t_2;
+        const real axis_y_rrrs_axes3_in_base_z = e_1_rrrs_r2_y*rrrs_base_frame_zx +
+            rrrs_base_frame_zy*w_1_rrrs_t + rrrs_base_frame_zz*w_1_rrrs_t_2;
+        const real inv_v_1_rrrs_z = 1/v_1_rrrs_z;
+        /* (rrrs-V8) reciprocal vector 2 */
+        const real inv_r_2_rrrs_r0_y = 1/r_2_rrrs_r0_y;
+        /* (rrrs-V7) reciprocal vector 1 */
+        const real w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z;
+        const real w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z;
+        const real w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z;
+        /* (M11) moment of the column's unit force about the platform origin */
+        const real H_a_1_rrrs_x = q_rrrs_in_base_y*w_1_rrrs_t_5 - q_rrrs_in_base_z*w_1_rrrs_t_4;
+        const real H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5;
+        const real H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3;
+        /* (rrrs-V8) reciprocal vector 2 */
+        const real w_2_rrrs_t =
+            inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+            axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y);
+        const real w_2_rrrs_t_2 =
+            inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+            axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z);
+        const real w_2_rrrs_t_3 =
+            inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+            axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x);
+        /* (M12) moment of the column's unit force about the platform origin */
+        const real H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3;
+        const real H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t;
+        const real H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_5 = b_c_x - rrrs_platform_point_x;
+        const real spread_t_6 = b_c_y - rrrs_platform_point_y;
+        const real spread_t_7 = b_c_z - rrrs_platform_point_z;
+        const real spread_t_8 = spread_t_5*spread_t_5 + spread_t_6*spread_t_6 +
+            spread_t_7*spread_t_7;
+        /* (rrrs-K5) squared amplitude */
+        const real pivot_size_5 = magnitude(rho2_1_rrrs);
+        /* (rrrs-K19) squared amplitude */
+        const real pivot_size_6 = magnitude(rho2_2_rrrs);
+        /* (rrrs-V7) reciprocal vector 1 */
+        const real pivot_size_7 = magnitude(v_1_rrrs_z);
+        const real pivot_size_8 = magnitude(r_2_rrrs_r0_y);
+        /* (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots_2 = lesser(lesser(lesser(root(inv_rho2_2_rrrs_t_4*pivot_size_6),
+            inv_size_rrrs*pivot_size_7), inv_size_rrrs*pivot_size_8),
+            root(inv_size_rrrs_t_3*pivot_size_5));
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_8 : spread_t_8;  /* total_rrrs */
+        o->entry[0][k] = w_1_rrrs_t_3;
+        o->entry[1][k] = w_1_rrrs_t_4;
+        o->entry[2][k] = w_1_rrrs_t_5;
+        o->entry[3][k] = H_a_1_rrrs_x;
+        o->entry[4][k] = H_a_1_rrrs_y;
+        o->entry[5][k] = H_a_1_rrrs_z;
+        o->entry[6][k] = -w_2_rrrs_t;
+        o->entry[7][k] = -w_2_rrrs_t_2;
+        o->entry[8][k] = -w_2_rrrs_t_3;
+        o->entry[9][k] = H_a_2_rrrs_x;
+        o->entry[10][k] = H_a_2_rrrs_y;
+        o->entry[11][k] = H_a_2_rrrs_z;
+        o->entry[12][k] = least_pivots_2;
+        o->entry[13][k] = disc_2_rrrs;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrrs) > TOLERANCE*TOLERANCE*size_rrrs_t_3) +
+            UNLESS(magnitude(rho2_2_rrrs) > TOLERANCE*TOLERANCE*rho2_2_rrrs_t) +
+            UNLESS(magnitude(v_1_rrrs_z) > TOLERANCE*size_rrrs) + UNLESS(magnitude(-r_2_rrrs_r0_y)
+            > TOLERANCE*size_rrrs);
+        o->unreachable[k] = UNLESS(disc_2_rrrs >= 0);
+    }
+}
+
+INLINE void condition_place_rrrs(size_t w, const condition_results_rrrs *o, size_t leg, size_t
+    first, real *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(3 + 2*leg)*w + k] = o->entry[0][first + k];
+        H[(10 + 2*leg)*w + k] = o->entry[1][first + k];
+        H[(17 + 2*leg)*w + k] = o->entry[2][first + k];
+        H[(24 + 2*leg)*w + k] = o->entry[3][first + k];
+        H[(31 + 2*leg)*w + k] = o->entry[4][first + k];
+        H[(38 + 2*leg)*w + k] = o->entry[5][first + k];
+        H[(4 + 2*leg)*w + k] = o->entry[6][first + k];
+        H[(11 + 2*leg)*w + k] = o->entry[7][first + k];
+        H[(18 + 2*leg)*w + k] = o->entry[8][first + k];
+        H[(25 + 2*leg)*w + k] = o->entry[9][first + k];
+        H[(32 + 2*leg)*w + k] = o->entry[10][first + k];
+        H[(39 + 2*leg)*w + k] = o->entry[11][first + k];
+        pivots[(1 + leg)*w + k] = o->entry[12][first + k];
+        reach[(1 + leg)*w + k] = o->entry[13][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rrrrs = s->sum[0][k];
+        const real total_rrrs = s->sum[1][k];
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = root(R(0.3333333333333333)*total_rrrrs +
+            R(0.3333333333333333)*total_rrrs);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_rrrrs results_rrrrs;
+    condition_results_rrrs results_rrrs;
+    clear(H, 49*w);
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rrrrs(m, w, 0, 1, s, 0, 1, 0, X, &results_rrrrs);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_place_rrrrs(w, &results_rrrrs, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rrrrs.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rrrrs.sum, 0, sizeof results_rrrrs.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_legs_rrrrs(m, w, leg, 0, s, 1, w, 1, X, &results_rrrrs);
+            condition_place_rrrrs(w, &results_rrrrs, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rrrrs.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rrrs(m, 0, 1, s, 0, 2, 0, &results_rrrs);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            condition_place_rrrs(w, &results_rrrs, leg, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrrs.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rrrs.sum, 0, sizeof results_rrrs.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            condition_legs_rrrs(m, leg, 0, s, 1, w, 1, &results_rrrs);
+            condition_place_rrrs(w, &results_rrrs, leg, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrrs.sum[n][k];
+            }
+        }
+    }
+    condition_after(w, s, lengths);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -10442,12 +11175,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int hybrid_3rrrs_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 7) ? HYBRID_3RRRS_REDUNDANT_OK : HYBRID_3RRRS_REDUNDANT_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 7, 1, &code, completed);
     return code;
 }
@@ -10498,12 +11232,16 @@ int hybrid_3rrrs_redundant_energy(const prepared *m, const real *X, const real *
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 1, 2, 4, 5, 7, 8};
     real q[10];
     int code = hybrid_3rrrs_redundant_inverse_kinematics(m, X, q);
+    if (code != HYBRID_3RRRS_REDUNDANT_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 7; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -10521,8 +11259,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[49];
     int code = hybrid_3rrrs_redundant_H(m, X, H);
-    fill_rows(7, H, gap, a);
     if (code == HYBRID_3RRRS_REDUNDANT_OK) {
+        fill_rows(7, H, gap, a);
         least_squares(7, 7, a, step);
     }
     return code;
@@ -10531,7 +11269,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 7 };
-    real found[8], gap[GAPS], trial[8], next[GAPS], step[7];
+    real found[8], gap[GAPS] = {0}, trial[8] = {0}, next[GAPS] = {0}, step[7] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 7) ? mismatch(m, q_actuated, X0, gap, &size)
         : HYBRID_3RRRS_REDUNDANT_INVALID;
@@ -10560,16 +11298,115 @@ int hybrid_3rrrs_redundant_forward_kinematics(const prepared *m, const real *q_a
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    static const size_t moments[] = {3, 4, 5, 6};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(8, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 4; ++i) {
+        for (size_t j = 0; j < 7; ++j) {
+            H[moments[i]*7 + j] /= length;
+        }
+    }
+    check(49, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int hybrid_3rrrs_redundant_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[49], a[49], found[7], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != HYBRID_3RRRS_REDUNDANT_OK) {
+        refuse(7, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 7; ++i) {
+        for (size_t j = 0; j < 7; ++j) {
+            a[i*7 + j] = H[i*7 + j];
+        }
+    }
+    singular_values(7, 7, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int hybrid_3rrrs_redundant_rotation(const real *X, real *R)
 {
-    const real *const p = X + 3;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 8) && n > 0 && is_finite(n) ? HYBRID_3RRRS_REDUNDANT_OK : HYBRID_3RRRS_REDUNDANT_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 3, p);
+    const int code = all_finite(X, 8) && all_finite(p, 4) ? HYBRID_3RRRS_REDUNDANT_OK : HYBRID_3RRRS_REDUNDANT_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -10578,11 +11415,8 @@ int hybrid_3rrrs_redundant_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[8] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[3 + i] = p[i]/n;
-    }
+    unit(p, found + 3);
     memcpy(found, t, 3*sizeof *t);
     const int code = all_finite(found, 8) ? HYBRID_3RRRS_REDUNDANT_OK : HYBRID_3RRRS_REDUNDANT_INVALID;
     deliver(found, 8, 1, &code, X);
@@ -10605,6 +11439,10 @@ int hybrid_3rrrs_redundant_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(8, X);
+        return HYBRID_3RRRS_REDUNDANT_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -10651,6 +11489,11 @@ size_t hybrid_3rrrs_redundant_M_batch(const hybrid_3rrrs_redundant_model *model,
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 8*i, M + 49*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_M(model, X + 8*(i + k), M + 49*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10677,6 +11520,11 @@ size_t hybrid_3rrrs_redundant_Z_batch(const hybrid_3rrrs_redundant_model *model,
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 8*i, V + 7*i, Z + 7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_Z(model, X + 8*(i + k), V + 7*(i + k), Z + 7*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10701,6 +11549,11 @@ size_t hybrid_3rrrs_redundant_H_batch(const hybrid_3rrrs_redundant_model *model,
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 8*i, H + 49*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_H(model, X + 8*(i + k), H + 49*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10729,6 +11582,12 @@ size_t hybrid_3rrrs_redundant_dynamics_batch(const hybrid_3rrrs_redundant_model 
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 8*i, V + 7*i, M + 49*i, Z + 7*i, H + 49*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_dynamics(model, X + 8*(i + k), V + 7*(i + k), M + 49*(i + k), Z
+                    + 7*(i + k), H + 49*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10754,6 +11613,11 @@ size_t hybrid_3rrrs_redundant_inverse_kinematics_batch(const hybrid_3rrrs_redund
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 8*i, q + 10*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_inverse_kinematics(model, X + 8*(i + k), q + 10*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10780,6 +11644,12 @@ size_t hybrid_3rrrs_redundant_joint_rates_batch(const hybrid_3rrrs_redundant_mod
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 8*i, V + 7*i, rates + 10*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_joint_rates(model, X + 8*(i + k), V + 7*(i + k), rates + 10*(i +
+                    k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10806,6 +11676,12 @@ size_t hybrid_3rrrs_redundant_joint_accelerations_batch(const hybrid_3rrrs_redun
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 8*i, V + 7*i, A + 7*i, accelerations + 10*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_joint_accelerations(model, X + 8*(i + k), V + 7*(i + k), A +
+                    7*(i + k), accelerations + 10*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10836,6 +11712,12 @@ size_t hybrid_3rrrs_redundant_inverse_dynamics_batch(const hybrid_3rrrs_redundan
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 8*i, V + 7*i, A + 7*i, wrench ? wrench + 6*i : NULL, tau +
             7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_inverse_dynamics(model, X + 8*(i + k), V + 7*(i + k), A + 7*(i +
+                    k), wrench ? wrench + 6*(i + k) : NULL, tau + 7*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10866,6 +11748,12 @@ size_t hybrid_3rrrs_redundant_forward_dynamics_batch(const hybrid_3rrrs_redundan
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 8*i, V + 7*i, tau + 7*i, wrench ? wrench + 6*i : NULL, A +
             7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != HYBRID_3RRRS_REDUNDANT_OK) {
+                codes[k] = hybrid_3rrrs_redundant_forward_dynamics(model, X + 8*(i + k), V + 7*(i + k), tau + 7*(i
+                    + k), wrench ? wrench + 6*(i + k) : NULL, A + 7*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -10878,12 +11766,13 @@ size_t hybrid_3rrrs_redundant_forward_dynamics_batch(const hybrid_3rrrs_redundan
 
 size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const hybrid_3rrrs_redundant_model
     *model, size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
-    const hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *completed, int *status)
+    const hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
+    hybrid_3rrrs_redundant_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_redundant_complete_acceleration(model, X + 8*i, V + 7*i, A + 7*i,
-            completed + 7*i);
+            wrench ? wrench + 6*i : NULL, completed + 7*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -10924,6 +11813,18 @@ size_t hybrid_3rrrs_redundant_forward_kinematics_batch(const hybrid_3rrrs_redund
     for (size_t i = 0; i < n; ++i) {
         const int code = hybrid_3rrrs_redundant_forward_kinematics(model, q_actuated + 7*i, X0 + 8*i, X +
             8*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t hybrid_3rrrs_redundant_condition_batch(const hybrid_3rrrs_redundant_model *model, size_t n,
+    const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *sigma,
+    hybrid_3rrrs_redundant_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = hybrid_3rrrs_redundant_condition(model, X + 8*i, sigma + 7*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -21,7 +21,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  hybrid_3rrrs_redundant_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask hybrid_3rrrs_redundant_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so hybrid_3rrrs_redundant.c refuses them unless HYBRID_3RRRS_REDUNDANT_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as HYBRID_3RRRS_REDUNDANT_OK.
  */
 #ifndef HYBRID_3RRRS_REDUNDANT_H_INCLUDED
 #define HYBRID_3RRRS_REDUNDANT_H_INCLUDED
@@ -134,9 +143,9 @@ typedef struct {
 
 /* What depends on the parameters alone; set by hybrid_3rrrs_redundant_prepare, then only read. */
 typedef struct {
-    hybrid_3rrrs_redundant_real J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
-            J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-            h_star_y, h_star_z, m_star;
+    hybrid_3rrrs_redundant_real J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
+            J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y,
+            gravity_z, h_star_x, h_star_y, h_star_z, legs_size, m_star;
     /* legs of type rrrrs */
     hybrid_3rrrs_redundant_real J_1_rrrrs_xx[1], J_2_rrrrs_xx[1], J_2_rrrrs_xy[1], J_2_rrrrs_xz[1],
             J_2_rrrrs_yy[1], J_2_rrrrs_yz[1], J_2_rrrrs_zz[1], J_3_rrrrs_xx[1], J_3_rrrrs_xy[1],
@@ -150,16 +159,17 @@ typedef struct {
             d_c_rrrrs_yy[1], d_phi_4_rrrrs_t[1], g_r0_x[1], g_r0_y[1], g_r0_z[1], h_1_rrrrs_x[1],
             h_1_rrrrs_y[1], h_1_rrrrs_z[1], h_2_rrrrs_x[1], h_2_rrrrs_y[1], h_2_rrrrs_z[1],
             h_3_rrrrs_x[1], h_3_rrrrs_y[1], h_3_rrrrs_z[1], h_4_rrrrs_x[1], h_4_rrrrs_y[1],
-            h_4_rrrrs_z[1], inv_rrrrs_platform_joint_offset_x[1], inv_size_rrrrs_t_7[1],
-            inv_size_rrrrs_t_8[1], potential_t_3[1], potential_t_4[1], rho2_3_rrrrs_t[1],
-            rrrrs_base_frame_xx[1], rrrrs_base_frame_xy[1], rrrrs_base_frame_xz[1],
-            rrrrs_base_frame_yx[1], rrrrs_base_frame_yy[1], rrrrs_base_frame_yz[1],
-            rrrrs_base_frame_zx[1], rrrrs_base_frame_zy[1], rrrrs_base_frame_zz[1],
-            rrrrs_base_point_x[1], rrrrs_base_point_y[1], rrrrs_base_point_z[1],
-            rrrrs_joint2_offset_x[1], rrrrs_joint3_offset_x[1], rrrrs_joint4_offset_x[1],
-            rrrrs_link1_mass[1], rrrrs_link2_mass[1], rrrrs_link3_mass[1], rrrrs_link4_mass[1],
+            h_4_rrrrs_z[1], inv_rho2_3_rrrrs_t_4[1], inv_rrrrs_platform_joint_offset_x[1],
+            inv_size_rrrrs[1], inv_size_rrrrs_t_2[1], inv_size_rrrrs_t_3[1], inv_size_rrrrs_t_4[1],
+            potential_t_3[1], potential_t_4[1], rho2_3_rrrrs_t[1], rrrrs_base_frame_xx[1],
+            rrrrs_base_frame_xy[1], rrrrs_base_frame_xz[1], rrrrs_base_frame_yx[1],
+            rrrrs_base_frame_yy[1], rrrrs_base_frame_yz[1], rrrrs_base_frame_zx[1],
+            rrrrs_base_frame_zy[1], rrrrs_base_frame_zz[1], rrrrs_base_point_x[1],
+            rrrrs_base_point_y[1], rrrrs_base_point_z[1], rrrrs_joint2_offset_x[1],
+            rrrrs_joint3_offset_x[1], rrrrs_joint4_offset_x[1], rrrrs_link1_mass[1],
+            rrrrs_link2_mass[1], rrrrs_link3_mass[1], rrrrs_link4_mass[1],
             rrrrs_platform_joint_offset_x[1], rrrrs_platform_point_x[1], rrrrs_platform_point_y[1],
-            rrrrs_platform_point_z[1], size_rrrrs[1], size_rrrrs_t_8[1];
+            rrrrs_platform_point_z[1], size_rrrrs[1], size_rrrrs_t_3[1];
     /* legs of type rrrs */
     hybrid_3rrrs_redundant_real J_1_rrrs_xx[2], J_2_rrrs_xx[2], J_2_rrrs_xy[2], J_2_rrrs_xz[2],
             J_2_rrrs_yy[2], J_2_rrrs_yz[2], J_3_rrrs_xx[2], J_3_rrrs_xy[2], J_3_rrrs_xz[2],
@@ -169,25 +179,27 @@ typedef struct {
             b_rrrs_r0_y[2], branch_1_rrrs[2], branch_2_rrrs[2], d_Gamma_2_rrrs_t[2],
             d_Gamma_2_rrrs_y[2], d_c_rrrs_yy[2], d_phi_3_rrrs_t[2], g_r0_x_2[2], g_r0_y_2[2],
             g_r0_z_2[2], h_1_rrrs_x[2], h_1_rrrs_y[2], h_1_rrrs_z[2], h_2_rrrs_x[2], h_2_rrrs_y[2],
-            h_2_rrrs_z[2], h_3_rrrs_x[2], h_3_rrrs_y[2], h_3_rrrs_z[2],
-            inv_rrrs_platform_joint_offset_x[2], inv_size_rrrs_t_6[2], inv_size_rrrs_t_7[2],
-            potential_t[2], potential_t_2[2], rho2_2_rrrs_t[2], rrrs_base_frame_xx[2],
-            rrrs_base_frame_xy[2], rrrs_base_frame_xz[2], rrrs_base_frame_yx[2],
-            rrrs_base_frame_yy[2], rrrs_base_frame_yz[2], rrrs_base_frame_zx[2],
-            rrrs_base_frame_zy[2], rrrs_base_frame_zz[2], rrrs_base_point_x[2], rrrs_base_point_y[2],
-            rrrs_base_point_z[2], rrrs_joint2_offset_x[2], rrrs_joint3_offset_x[2],
-            rrrs_link1_mass[2], rrrs_link2_mass[2], rrrs_link3_mass[2],
+            h_2_rrrs_z[2], h_3_rrrs_x[2], h_3_rrrs_y[2], h_3_rrrs_z[2], inv_rho2_2_rrrs_t_4[2],
+            inv_rrrs_platform_joint_offset_x[2], inv_size_rrrs[2], inv_size_rrrs_t[2],
+            inv_size_rrrs_t_2[2], inv_size_rrrs_t_3[2], potential_t[2], potential_t_2[2],
+            rho2_2_rrrs_t[2], rrrs_base_frame_xx[2], rrrs_base_frame_xy[2], rrrs_base_frame_xz[2],
+            rrrs_base_frame_yx[2], rrrs_base_frame_yy[2], rrrs_base_frame_yz[2],
+            rrrs_base_frame_zx[2], rrrs_base_frame_zy[2], rrrs_base_frame_zz[2], rrrs_base_point_x[2],
+            rrrs_base_point_y[2], rrrs_base_point_z[2], rrrs_joint2_offset_x[2],
+            rrrs_joint3_offset_x[2], rrrs_link1_mass[2], rrrs_link2_mass[2], rrrs_link3_mass[2],
             rrrs_platform_joint_offset_x[2], rrrs_platform_point_x[2], rrrs_platform_point_y[2],
-            rrrs_platform_point_z[2], size_rrrs[2], size_rrrs_t_8[2];
+            rrrs_platform_point_z[2], size_rrrs[2], size_rrrs_t_3[2];
 } hybrid_3rrrs_redundant_model;
 
 extern const hybrid_3rrrs_redundant_params hybrid_3rrrs_redundant_default_params;
 extern const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_X[HYBRID_3RRRS_REDUNDANT_NQ];
 extern const hybrid_3rrrs_redundant_real hybrid_3rrrs_redundant_HOME_Q[HYBRID_3RRRS_REDUNDANT_NJ];
 
-/* Prepare a model.  HYBRID_3RRRS_REDUNDANT_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  HYBRID_3RRRS_REDUNDANT_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int hybrid_3rrrs_redundant_prepare(const hybrid_3rrrs_redundant_params *params, hybrid_3rrrs_redundant_model *model);
 
 /* Inertia matrix M. 759 mul, 580 add, 12 div, 6 sqrt, 2 trig. In: X (NQ). Out: M (NV x NV). */
@@ -272,14 +284,16 @@ size_t hybrid_3rrrs_redundant_forward_dynamics_batch(const hybrid_3rrrs_redundan
     hybrid_3rrrs_redundant_real *tau, const hybrid_3rrrs_redundant_real *wrench,
     hybrid_3rrrs_redundant_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int hybrid_3rrrs_redundant_complete_acceleration(const hybrid_3rrrs_redundant_model *model, const
     hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V, const
-    hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *completed);
+    hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
+    hybrid_3rrrs_redundant_real *completed);
 size_t hybrid_3rrrs_redundant_complete_acceleration_batch(const hybrid_3rrrs_redundant_model
     *model, size_t n, const hybrid_3rrrs_redundant_real *X, const hybrid_3rrrs_redundant_real *V,
-    const hybrid_3rrrs_redundant_real *A, hybrid_3rrrs_redundant_real *completed, int *status);
+    const hybrid_3rrrs_redundant_real *A, const hybrid_3rrrs_redundant_real *wrench,
+    hybrid_3rrrs_redundant_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 988 mul, 715 add, 12 div, 6
    sqrt, 2 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -311,14 +325,26 @@ size_t hybrid_3rrrs_redundant_forward_kinematics_batch(const hybrid_3rrrs_redund
     size_t n, const hybrid_3rrrs_redundant_real *q_actuated, const hybrid_3rrrs_redundant_real
     *X0, hybrid_3rrrs_redundant_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 369 mul, 207 add, 12 div, 13 sqrt, 2 trig; the singular values apart. In: X (NQ). Out:
+   sigma (7), legs (3). */
+int hybrid_3rrrs_redundant_condition(const hybrid_3rrrs_redundant_model *model, const
+    hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *sigma,
+    hybrid_3rrrs_redundant_real *legs);
+size_t hybrid_3rrrs_redundant_condition_batch(const hybrid_3rrrs_redundant_model *model, size_t n,
+    const hybrid_3rrrs_redundant_real *X, hybrid_3rrrs_redundant_real *sigma,
+    hybrid_3rrrs_redundant_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int hybrid_3rrrs_redundant_rotation(const hybrid_3rrrs_redundant_real *X,
     hybrid_3rrrs_redundant_real *R);
 size_t hybrid_3rrrs_redundant_rotation_batch(size_t n, const hybrid_3rrrs_redundant_real *X,
     hybrid_3rrrs_redundant_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R; extra coordinates zero. In: t (3), R (3 x
-   3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int hybrid_3rrrs_redundant_pose(const hybrid_3rrrs_redundant_real *t, const
     hybrid_3rrrs_redundant_real *R, hybrid_3rrrs_redundant_real *X);
 size_t hybrid_3rrrs_redundant_pose_batch(size_t n, const hybrid_3rrrs_redundant_real *t, const

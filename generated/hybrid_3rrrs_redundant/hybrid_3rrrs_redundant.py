@@ -13,7 +13,14 @@ tau:    leg 1 joint 1, leg 1 joint 2, leg 1 joint 3, leg 2 joint 1, leg 2 joint 
 wrench: fx, fy, fz, mx, my, mz
 
 Impossible states (unreachable, singular, not finite) give NaN, in their rows only.
+So do quaternions of length 0, or not from 1.1e-154 to 1.3e154; rotation takes shorter ones too.
+Arguments are made of real numbers: TypeError for complex ones, truth values, text and masked
+arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows what is required, by
+position or keyword; all else is given by keyword.
 """
+
+import warnings
+from numbers import Real
 
 import numpy as np
 
@@ -31,6 +38,7 @@ __all__ = [
     "Parameters",
     "Z",
     "complete_acceleration",
+    "condition",
     "dynamics",
     "energy",
     "forward_dynamics",
@@ -53,15 +61,10 @@ NU = 7
 NC = 0
 NW = 6
 NJ = 10
-HOME_X = np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0, 1.1])
-HOME_Q = np.array([0.15, 1.1, -0.7, -0.6, 0.15, 0.9, -1.0, 0.15, 0.9, -1.0])
-HOME_X.setflags(write=False)
-HOME_Q.setflags(write=False)
 
-# Lengths below this fraction of a leg's size, and pivots below it, count as zero.
+# Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_PER_LEG = ("rrrrs_", "rrrs_", )
 _LEGS = {  # positions of the legs of each type
     "rrrrs": (0,),
     "rrrs": (1, 2),
@@ -194,50 +197,54 @@ _DEFAULTS = {
         [[0.00024, 0.0, 0.0], [0.0, 0.020370000000000003, 0.0], [0.0, 0.0, 0.020370000000000003]],
     ],
 }
-_RULES = {  # shape, entries that are zero by structure, what the values must be
-    "gravity": ((3,), (), ""),
-    "platform_mass": ((), (), "mass"),
-    "platform_centre_of_mass": ((3,), (), ""),
-    "platform_inertia": ((3, 3), (), "inertia"),
-    "rrrrs_base_point": ((1, 3), (), ""),
-    "rrrrs_base_frame": ((1, 3, 3), (), "rotation"),
-    "rrrrs_platform_point": ((1, 3), (), ""),
-    "rrrrs_joint2_offset": ((1, 3), (1, 2), ""),
-    "rrrrs_joint3_offset": ((1, 3), (1, 2), ""),
-    "rrrrs_joint4_offset": ((1, 3), (1, 2), ""),
-    "rrrrs_platform_joint_offset": ((1, 3), (1, 2), ""),
-    "rrrrs_link1_mass": ((1,), (), "mass"),
-    "rrrrs_link1_centre_of_mass": ((1, 3), (), ""),
-    "rrrrs_link1_inertia": ((1, 3, 3), (), "inertia"),
-    "rrrrs_link2_mass": ((1,), (), "mass"),
-    "rrrrs_link2_centre_of_mass": ((1, 3), (), ""),
-    "rrrrs_link2_inertia": ((1, 3, 3), (), "inertia"),
-    "rrrrs_link3_mass": ((1,), (), "mass"),
-    "rrrrs_link3_centre_of_mass": ((1, 3), (), ""),
-    "rrrrs_link3_inertia": ((1, 3, 3), (), "inertia"),
-    "rrrrs_link4_mass": ((1,), (), "mass"),
-    "rrrrs_link4_centre_of_mass": ((1, 3), (), ""),
-    "rrrrs_link4_inertia": ((1, 3, 3), (), "inertia"),
-    "rrrs_base_point": ((2, 3), (), ""),
-    "rrrs_base_frame": ((2, 3, 3), (), "rotation"),
-    "rrrs_platform_point": ((2, 3), (), ""),
-    "rrrs_joint2_offset": ((2, 3), (1, 2), ""),
-    "rrrs_joint3_offset": ((2, 3), (1, 2), ""),
-    "rrrs_platform_joint_offset": ((2, 3), (1, 2), ""),
-    "rrrs_link1_mass": ((2,), (), "mass"),
-    "rrrs_link1_centre_of_mass": ((2, 3), (), ""),
-    "rrrs_link1_inertia": ((2, 3, 3), (), "inertia"),
-    "rrrs_link2_mass": ((2,), (), "mass"),
-    "rrrs_link2_centre_of_mass": ((2, 3), (), ""),
-    "rrrs_link2_inertia": ((2, 3, 3), (), "inertia"),
-    "rrrs_link3_mass": ((2,), (), "mass"),
-    "rrrs_link3_centre_of_mass": ((2, 3), (), ""),
-    "rrrs_link3_inertia": ((2, 3, 3), (), "inertia"),
+_RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
+    "gravity": ((3,), (3,), (), "free"),
+    "platform_mass": ((), (), (), "mass"),
+    "platform_centre_of_mass": ((3,), (3,), (), "free"),
+    "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
+    "rrrrs_base_point": ((1, 3), (3,), (), "free"),
+    "rrrrs_base_frame": ((1, 3, 3), (3, 3), (), "rotation"),
+    "rrrrs_platform_point": ((1, 3), (3,), (), "free"),
+    "rrrrs_joint2_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrrrs_joint3_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrrrs_joint4_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrrrs_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
+    "rrrrs_link1_mass": ((1,), (), (), "mass"),
+    "rrrrs_link1_centre_of_mass": ((1, 3), (3,), (), "free"),
+    "rrrrs_link1_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
+    "rrrrs_link2_mass": ((1,), (), (), "mass"),
+    "rrrrs_link2_centre_of_mass": ((1, 3), (3,), (), "free"),
+    "rrrrs_link2_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
+    "rrrrs_link3_mass": ((1,), (), (), "mass"),
+    "rrrrs_link3_centre_of_mass": ((1, 3), (3,), (), "free"),
+    "rrrrs_link3_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
+    "rrrrs_link4_mass": ((1,), (), (), "mass"),
+    "rrrrs_link4_centre_of_mass": ((1, 3), (3,), (), "free"),
+    "rrrrs_link4_inertia": ((1, 3, 3), (3, 3), (), "inertia"),
+    "rrrs_base_point": ((2, 3), (3,), (), "free"),
+    "rrrs_base_frame": ((2, 3, 3), (3, 3), (), "rotation"),
+    "rrrs_platform_point": ((2, 3), (3,), (), "free"),
+    "rrrs_joint2_offset": ((2, 3), (3,), (1, 2), "free"),
+    "rrrs_joint3_offset": ((2, 3), (3,), (1, 2), "free"),
+    "rrrs_platform_joint_offset": ((2, 3), (3,), (1, 2), "free"),
+    "rrrs_link1_mass": ((2,), (), (), "mass"),
+    "rrrs_link1_centre_of_mass": ((2, 3), (3,), (), "free"),
+    "rrrs_link1_inertia": ((2, 3, 3), (3, 3), (), "inertia"),
+    "rrrs_link2_mass": ((2,), (), (), "mass"),
+    "rrrs_link2_centre_of_mass": ((2, 3), (3,), (), "free"),
+    "rrrs_link2_inertia": ((2, 3, 3), (3, 3), (), "inertia"),
+    "rrrs_link3_mass": ((2,), (), (), "mass"),
+    "rrrs_link3_centre_of_mass": ((2, 3), (3,), (), "free"),
+    "rrrs_link3_inertia": ((2, 3, 3), (3, 3), (), "inertia"),
 }
 
 
 class Parameters:
     """Parameters of the model: frozen, with read-only copies of arrays.
+
+    Values obey the rules of a specification: masses are not negative, inertia tensors symmetric
+    and without negative principal moments, frames rotations, axes of length 1, and what the
+    structure fixes at zero is zero.  Copies and what is unpickled are made anew from the values.
 
     Attributes:
         gravity: acceleration of gravity, base frame [m/s^2], shape (3,).
@@ -281,14 +288,12 @@ class Parameters:
     """
 
     def __init__(self, **values):
-        """Defaults, with the given values in their place; ValueError if one is impossible."""
-        unknown = sorted(set(values) - set(_DEFAULTS))
-        if unknown:
-            raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
-        for name, rule in _RULES.items():
-            value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_cache", {})
+        """Defaults, with the given values in their place; ValueError if one is impossible.
+
+        TypeError for what is not made of real numbers.  A warning tells of an inertia that no
+        body has, by its principal moments.
+        """
+        _fill(self, values, values)
 
     def __setattr__(self, name, value):
         raise AttributeError("Parameters are frozen; use replace()")
@@ -298,7 +303,10 @@ class Parameters:
 
     def replace(self, **changes):
         """A copy with some values changed."""
-        return Parameters(**{**{name: getattr(self, name) for name in _RULES}, **changes})
+        return _fill(object.__new__(Parameters), {**self._values(), **changes}, changes)
+
+    def __reduce__(self):
+        return _remade, (self._values(),)
 
     def __eq__(self, other):
         if not isinstance(other, Parameters):
@@ -312,6 +320,10 @@ class Parameters:
         changed = [n for n in _RULES if not np.array_equal(getattr(self, n), _DEFAULTS[n])]
         return f"Parameters({', '.join(f'{n}={getattr(self, n)!r}' for n in changed)})"
 
+    def _values(self):
+        """All values by name."""
+        return {name: getattr(self, name) for name in _RULES}
+
     def _prepared(self):
         """Values that depend on the parameters alone, computed once."""
         if "model" not in self._cache:
@@ -319,46 +331,156 @@ class Parameters:
         return self._cache["model"]
 
 
-def _checked(name, value, shape, zeros, rule):
-    """A parameter as a read-only array (or float), or ValueError."""
-    value = np.array(value, dtype=float)
+def _fill(p, values, fresh):
+    """The parameters with these values, checked; fresh ones are warned of, where there is need."""
+    unknown = sorted(set(values) - set(_DEFAULTS))
+    if unknown:
+        raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
+    for name, rule in _RULES.items():
+        value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
+        object.__setattr__(p, name, value)
+        if rule[-1] == "inertia" and name in fresh:
+            _warn(name, value, 4)
+    object.__setattr__(p, "_cache", {})
+    return p
+
+
+def _remade(values):
+    """Parameters from the values of others: a copy, or what was pickled."""
+    return _fill(object.__new__(Parameters), values, ())
+
+
+_REAL = np.dtype(float)
+_KINDS = {"b": "truth values", "c": "complex numbers", "S": "text", "U": "text"}
+
+
+def _numbers(function, name, value):
+    """An argument as an array of floats; TypeError unless it is made of real numbers alone."""
+    try:
+        kind = _unfit(value)
+        if not kind:
+            return np.asarray(value, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{function}: {name} is no array of numbers: {error}") from None
+    raise TypeError(f"{function}: {name}: expected real numbers, got {kind}")
+
+
+def _unfit(value):
+    """What, other than real numbers, a value is made of; or an empty text."""
+    if isinstance(value, (list, tuple)):
+        if set(map(type, value)) <= {float, int, np.float64}:
+            return ""
+        return next(filter(None, map(_unfit, value)), "")
+    if isinstance(value, np.ma.MaskedArray):
+        return "a masked array"
+    if value is None:
+        return "None"
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        odd = (v for v in array.flat if not isinstance(v, Real) or isinstance(v, bool))
+        return next((type(v).__name__ for v in odd), "")
+    return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
+
+
+def _vector(function, name, value, size):
+    """An argument as an array of floats (..., size), or an error that names it."""
+    if type(value) is not np.ndarray or value.dtype is not _REAL:
+        value = _numbers(function, name, value)
+    if value.ndim == 0 or value.shape[-1] != size:
+        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
+    return value
+
+
+def _lead(**arguments):
+    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
+    leads = [v.shape[:-1] for v in arguments.values()]
+    if not any(leads):
+        return ()
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
+
+
+def _given(p):
+    """The parameters, by default the model's own; TypeError for anything else."""
+    if isinstance(p, Parameters):
+        return p
+    if p is None:
+        return _DEFAULT
+    kind = type(p).__name__
+    if kind == "Parameters":
+        kind = f"Parameters of {type(p).__module__} (another module, or this one imported anew)"
+    raise TypeError(f"p: expected Parameters, got {kind}; a wrench is given as wrench=")
+
+
+def _frozen(value):
+    """A copy that cannot be made writable again: its memory is a bytes object."""
+    return np.frombuffer(value.tobytes(), dtype=float).reshape(value.shape)
+
+
+def _checked(name, value, shape, core, zeros, rule):
+    """A parameter as a read-only array (or float); ValueError or TypeError if it is impossible."""
+    value = _numbers("Parameters", name, value) + 0.0  # a copy, without the sign of zero
     if value.shape != shape:
         raise ValueError(f"Parameters: {name} has shape {value.shape}, expected {shape}")
     if not np.all(np.isfinite(value)):
         raise ValueError(f"Parameters: {name} has entries that are not finite")
-    flat = value.reshape(-1, value[0].size if zeros and value.ndim > len(_core(name)) else value.size)
-    if any(np.any(np.abs(flat[:, k]) > 1e-9) for k in zeros):
+    if np.any(np.abs(value) > 1e+12):
+        raise ValueError(f"Parameters: {name} has entries beyond 1e+12 in size")
+    value = np.array(value)
+    each = value.reshape(-1, *core)
+    flat = value.reshape(len(each), -1)
+    if any(np.any(np.abs(flat[:, k]) > 1e-09) for k in zeros):
         raise ValueError(f"Parameters: {name} must be zero in entries {zeros}: the structure is fixed")
-    for k in zeros:
-        flat[:, k] = 0.0
-    message = _violates(value, rule)
+    flat[:, list(zeros)] = 0.0
+    message = _violates(each, rule)
     if message:
         raise ValueError(f"Parameters: {name} {message}")
-    value.setflags(write=False)
-    return value if shape else float(value)
-
-
-def _core(name):
-    """Shape of one leg's entry, or of the whole."""
-    shape = _RULES[name][0]
-    return shape[1:] if name.startswith(_PER_LEG) else shape
+    return _frozen(value) if shape else float(value)
 
 
 def _violates(value, rule):
-    """What is wrong with a parameter, or an empty text."""
+    """What is wrong with the values of a parameter, one after another; or an empty text."""
     if rule == "mass" and np.any(value < 0.0):
         return "must not be negative"
-    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-6):
+    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-06):
         return "must be of length 1"
-    if rule == "inertia" and np.any(np.abs(value - np.swapaxes(value, -1, -2)) > 1e-9 * (
-        1e-300 + np.max(np.abs(value)))):
-        return "must be symmetric"
-    if rule == "rotation":
-        error = np.abs(value @ np.swapaxes(value, -1, -2) - np.eye(3))
-        if np.any(error > 1e-6) or np.any(np.linalg.det(value) < 0.0):
-            return "must be rotation matrices"
+    if rule == "planar_inertia" and np.any(value[:, 2, 2] < 0.0):
+        return "must have an izz that is not negative"
+    if rule == "inertia":
+        rounding = 1e-09 * np.max(np.abs(value), axis=(1, 2))
+        if np.any(np.max(np.abs(value - np.swapaxes(value, 1, 2)), axis=(1, 2)) > rounding):
+            return "must be symmetric to 1e-09 of its largest entry"
+        if np.any(np.linalg.eigvalsh(value)[:, 0] < -rounding):
+            return "must have no negative principal moments, to 1e-09 of its largest entry"
+    if rule in ("rotation", "planar_rotation") and not np.all(_are_rotations(value)):
+        return "must be rotation matrices: orthonormal to 1e-06, determinant +1"
+    if rule == "planar_rotation" and np.any(np.abs(value[:, 2, 2] - 1.0) > 1e-09):
+        return "must turn about the normal of the plane"
     return ""
 
+
+def _are_rotations(R):
+    """Which matrices (..., n, n) have orthonormal rows, to 1e-06, and a positive determinant."""
+    with np.errstate(all="ignore"):
+        error = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1]))
+        return np.all(error <= 1e-06, axis=(-1, -2)) & (np.linalg.det(R) > 0.0)
+
+
+def _warn(name, value, level):
+    """Tell of principal moments that no body has: the largest exceeds the sum of the others."""
+    for tensor in value.reshape(-1, 3, 3):
+        small, middle, large = np.linalg.eigvalsh(tensor)
+        if large > small + middle + 1e-09 * np.max(np.abs(tensor)):
+            warnings.warn(
+                f"Parameters: {name}: principal moments {small:.6g}, {middle:.6g}, {large:.6g} kg m^2"
+                " belong to no body: the largest exceeds the sum of the others", stacklevel=level)
+
+
+HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0, 1.1]))
+HOME_Q = _frozen(np.array([0.15, 1.1, -0.7, -0.6, 0.15, 0.9, -1.0, 0.15, 0.9, -1.0]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
     "branch_1_rrrrs": np.array([1.0]),
@@ -502,39 +624,31 @@ def _prepare(p):
     J_star_t_8 = platform_mass*(J_star_t_2 - J_star_t_4)
     J_star_t_9 = platform_centre_of_mass_y*platform_centre_of_mass_z*platform_mass
     J_star_t_10 = platform_mass*(J_star_t_3 - J_star_t_4)
-    # (rrrrs-G1) size of the leg, the measure of what is near singular
-    size_rrrrs_t = (
-    rrrrs_base_point_x*rrrrs_base_point_x + rrrrs_base_point_y*rrrrs_base_point_y +
-        rrrrs_base_point_z*rrrrs_base_point_z
+    # (rrrrs-G2) length of the leg's lever arms, the measure of what is near singular
+    size_rrrrs_t = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x
+    size_rrrrs_t_2 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x
+    size_rrrrs_t_3 = (
+    6.696672622239999e-07 + rrrrs_joint3_offset_x*rrrrs_joint3_offset_x + size_rrrrs_t +
+        size_rrrrs_t_2
     )
-    size_rrrrs_t_2 = rrrrs_joint4_offset_x*rrrrs_joint4_offset_x
-    size_rrrrs_t_3 = rrrrs_platform_joint_offset_x*rrrrs_platform_joint_offset_x
-    size_rrrrs_t_4 = rrrrs_platform_point_x*rrrrs_platform_point_x
-    size_rrrrs_t_5 = rrrrs_platform_point_y*rrrrs_platform_point_y
-    size_rrrrs_t_6 = rrrrs_platform_point_z*rrrrs_platform_point_z
-    size_rrrrs_t_7 = size_rrrrs_t_4 + size_rrrrs_t_5 + size_rrrrs_t_6
-    size_rrrrs_t_8 = (
-    rrrrs_joint2_offset_x*rrrrs_joint2_offset_x + rrrrs_joint3_offset_x*rrrrs_joint3_offset_x +
-        size_rrrrs_t + size_rrrrs_t_2 + size_rrrrs_t_3 + size_rrrrs_t_7
-    )
-    size_rrrrs = sqrt(size_rrrrs_t_8)
+    size_rrrrs = sqrt(size_rrrrs_t_3)
     # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
-    Kd_3_rrrrs_t = 0.5*size_rrrrs_t_2
-    Kd_3_rrrrs_t_2 = 0.5*size_rrrrs_t_3
+    Kd_3_rrrrs_t = 0.5*size_rrrrs_t
+    Kd_3_rrrrs_t_2 = 0.5*size_rrrrs_t_2
     # (rrrrs-K22) squared amplitude
-    rho2_3_rrrrs_t = size_rrrrs*size_rrrrs*size_rrrrs_t_8
+    rho2_3_rrrrs_t = size_rrrrs*size_rrrrs*size_rrrrs_t_3
     # (rrrrs-K29) the vector from joint 3 to the connection point, resolved along link 3
-    inv_size_rrrrs_t_7 = 1.0/size_rrrrs_t_2
+    inv_size_rrrrs_t_2 = 1.0/size_rrrrs_t
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    inv_size_rrrrs_t_8 = 1.0/size_rrrrs_t_3
-    # (rrrrs-G3) inertia tensor of link 1 about the origin of link 1
+    inv_size_rrrrs_t_3 = 1.0/size_rrrrs_t_2
+    # (rrrrs-G4) inertia tensor of link 1 about the origin of link 1
     J_1_rrrrs_t = rrrrs_link1_centre_of_mass_x*rrrrs_link1_centre_of_mass_x
     J_1_rrrrs_t_2 = (
     J_1_rrrrs_t + rrrrs_link1_centre_of_mass_y*rrrrs_link1_centre_of_mass_y +
         rrrrs_link1_centre_of_mass_z*rrrrs_link1_centre_of_mass_z
     )
     J_1_rrrrs_xx = rrrrs_link1_inertia_xx - rrrrs_link1_mass*(J_1_rrrrs_t - J_1_rrrrs_t_2)
-    # (rrrrs-G5) inertia tensor of link 2 about the origin of link 2
+    # (rrrrs-G6) inertia tensor of link 2 about the origin of link 2
     J_2_rrrrs_t = rrrrs_link2_centre_of_mass_x*rrrrs_link2_centre_of_mass_x
     J_2_rrrrs_t_2 = rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_y
     J_2_rrrrs_t_3 = rrrrs_link2_centre_of_mass_z*rrrrs_link2_centre_of_mass_z
@@ -554,7 +668,7 @@ def _prepare(p):
         rrrrs_link2_centre_of_mass_y*rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
     )
     J_2_rrrrs_zz = rrrrs_link2_inertia_zz - rrrrs_link2_mass*(J_2_rrrrs_t_3 - J_2_rrrrs_t_4)
-    # (rrrrs-G7) inertia tensor of link 3 about the origin of link 3
+    # (rrrrs-G8) inertia tensor of link 3 about the origin of link 3
     J_3_rrrrs_t = rrrrs_link3_centre_of_mass_x*rrrrs_link3_centre_of_mass_x
     J_3_rrrrs_t_2 = rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_y
     J_3_rrrrs_t_3 = rrrrs_link3_centre_of_mass_z*rrrrs_link3_centre_of_mass_z
@@ -574,9 +688,9 @@ def _prepare(p):
         rrrrs_link3_centre_of_mass_y*rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
     )
     J_3_rrrrs_zz = rrrrs_link3_inertia_zz - rrrrs_link3_mass*(J_3_rrrrs_t_3 - J_3_rrrrs_t_4)
-    # (rrrrs-G8) connection point to the centre of mass of link 4
+    # (rrrrs-G9) connection point to the centre of mass of link 4
     rho_tip_4_rrrrs_x = rrrrs_link4_centre_of_mass_x - rrrrs_platform_joint_offset_x
-    # (rrrrs-G10) inertia tensor of link 4 about the connection point
+    # (rrrrs-G11) inertia tensor of link 4 about the connection point
     J_4_rrrrs_t = rho_tip_4_rrrrs_x*rho_tip_4_rrrrs_x
     J_4_rrrrs_t_2 = rrrrs_link4_centre_of_mass_y*rrrrs_link4_centre_of_mass_y
     J_4_rrrrs_t_3 = rrrrs_link4_centre_of_mass_z*rrrrs_link4_centre_of_mass_z
@@ -596,18 +710,18 @@ def _prepare(p):
     J_4_rrrrs_zz = rrrrs_link4_inertia_zz - rrrrs_link4_mass*(J_4_rrrrs_t_3 - J_4_rrrrs_t_4)
     # (rrrrs-N25) inertia tensor of the links from 3 outwards about joint 3
     Jc_3_rrrrs_zz = J_3_rrrrs_zz + J_4_rrrrs_zz
-    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    # (rrrrs-G7) first moment of link 3 about the origin of link 3
     h_3_rrrrs_x = rrrrs_link3_centre_of_mass_x*rrrrs_link3_mass
     h_3_rrrrs_y = rrrrs_link3_centre_of_mass_y*rrrrs_link3_mass
     h_3_rrrrs_z = rrrrs_link3_centre_of_mass_z*rrrrs_link3_mass
     # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
     Jc_2_rrrrs_t = 0.5*rrrrs_joint3_offset_x*rrrrs_link3_mass
     Jc_2_rrrrs_t_2 = h_3_rrrrs_z*rrrrs_joint3_offset_x
-    # (rrrrs-G4) first moment of link 2 about the origin of link 2
+    # (rrrrs-G5) first moment of link 2 about the origin of link 2
     h_2_rrrrs_x = rrrrs_link2_centre_of_mass_x*rrrrs_link2_mass
     h_2_rrrrs_y = rrrrs_link2_centre_of_mass_y*rrrrs_link2_mass
     h_2_rrrrs_z = rrrrs_link2_centre_of_mass_z*rrrrs_link2_mass
-    # (rrrrs-G9) first moment of link 4 about the connection point
+    # (rrrrs-G10) first moment of link 4 about the connection point
     h_4_rrrrs_x = rho_tip_4_rrrrs_x*rrrrs_link4_mass
     h_4_rrrrs_y = rrrrs_link4_centre_of_mass_y*rrrrs_link4_mass
     h_4_rrrrs_z = rrrrs_link4_centre_of_mass_z*rrrrs_link4_mass
@@ -627,12 +741,16 @@ def _prepare(p):
     h_star_t_5 = rrrrs_link4_mass*rrrrs_platform_point_y
     h_star_t_6 = rrrrs_link4_mass*rrrrs_platform_point_z
     # (L3) inertia tensor about the platform origin
-    J_star_t_11 = rrrrs_link4_mass*(size_rrrrs_t_7 - size_rrrrs_t_4)
-    J_star_t_12 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_y
-    J_star_t_13 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_z
-    J_star_t_14 = rrrrs_link4_mass*(size_rrrrs_t_5 - size_rrrrs_t_7)
-    J_star_t_15 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z
-    J_star_t_16 = rrrrs_link4_mass*(size_rrrrs_t_6 - size_rrrrs_t_7)
+    J_star_t_11 = rrrrs_platform_point_x*rrrrs_platform_point_x
+    J_star_t_12 = rrrrs_platform_point_y*rrrrs_platform_point_y
+    J_star_t_13 = rrrrs_platform_point_z*rrrrs_platform_point_z
+    J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13
+    J_star_t_15 = rrrrs_link4_mass*(J_star_t_11 - J_star_t_14)
+    J_star_t_16 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_y
+    J_star_t_17 = rrrrs_link4_mass*rrrrs_platform_point_x*rrrrs_platform_point_z
+    J_star_t_18 = rrrrs_link4_mass*(J_star_t_12 - J_star_t_14)
+    J_star_t_19 = rrrrs_link4_mass*rrrrs_platform_point_y*rrrrs_platform_point_z
+    J_star_t_20 = rrrrs_link4_mass*(J_star_t_13 - J_star_t_14)
     # (rrrrs-N10) remainder without the acceleration in: acceleration of the reference point of link 3, less gravity
     g_r0_x = (
     gravity_x*rrrrs_base_frame_xy + gravity_y*rrrrs_base_frame_yy + gravity_z*rrrrs_base_frame_zy
@@ -661,7 +779,7 @@ def _prepare(p):
     Sigma_2_rrrrs_xx = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_xx
     Sigma_2_rrrrs_yy = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_yy
     Sigma_2_rrrrs_zz = trace_J_2_rrrrs_rrrrs - J_2_rrrrs_zz
-    # (rrrrs-G2) first moment of link 1 about the origin of link 1
+    # (rrrrs-G3) first moment of link 1 about the origin of link 1
     h_1_rrrrs_x = rrrrs_link1_centre_of_mass_x*rrrrs_link1_mass
     h_1_rrrrs_y = rrrrs_link1_centre_of_mass_y*rrrrs_link1_mass
     h_1_rrrrs_z = rrrrs_link1_centre_of_mass_z*rrrrs_link1_mass
@@ -680,49 +798,48 @@ def _prepare(p):
     )
     potential_t_3 = b_rrrrs_r0_z*rrrrs_link1_mass
     potential_t_4 = rrrrs_link2_mass*(b_rrrrs_r0_z + rrrrs_joint2_offset_x)
+    # (rrrrs-K7) squared amplitude
+    inv_size_rrrrs_t_4 = 1.0/size_rrrrs_t_3
+    # (rrrrs-K22) squared amplitude
+    inv_rho2_3_rrrrs_t_4 = 1.0/rho2_3_rrrrs_t
+    # (rrrrs-V9) reciprocal vector 1
+    inv_size_rrrrs = 1.0/size_rrrrs
     total_rrrrs = np.sum(np.broadcast_to(rrrrs_link4_mass, _rrrrs))
     total_rrrrs_x = np.sum(np.broadcast_to(h_star_t_4, _rrrrs))
     total_rrrrs_y = np.sum(np.broadcast_to(h_star_t_5, _rrrrs))
     total_rrrrs_z = np.sum(np.broadcast_to(h_star_t_6, _rrrrs))
-    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_11, _rrrrs))
-    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_12, _rrrrs))
-    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_13, _rrrrs))
-    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_14, _rrrrs))
-    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_15, _rrrrs))
-    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_16, _rrrrs))
-    # (rrrs-G1) size of the leg, the measure of what is near singular
-    size_rrrs_t = (
-    rrrs_base_point_x*rrrs_base_point_x + rrrs_base_point_y*rrrs_base_point_y +
-        rrrs_base_point_z*rrrs_base_point_z
-    )
-    size_rrrs_t_2 = rrrs_joint3_offset_x*rrrs_joint3_offset_x
-    size_rrrs_t_3 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
-    size_rrrs_t_4 = rrrs_platform_point_x*rrrs_platform_point_x
-    size_rrrs_t_5 = rrrs_platform_point_y*rrrs_platform_point_y
-    size_rrrs_t_6 = rrrs_platform_point_z*rrrs_platform_point_z
-    size_rrrs_t_7 = size_rrrs_t_4 + size_rrrs_t_5 + size_rrrs_t_6
-    size_rrrs_t_8 = (
-    rrrs_joint2_offset_x*rrrs_joint2_offset_x + size_rrrs_t + size_rrrs_t_2 + size_rrrs_t_3 +
-        size_rrrs_t_7
-    )
-    size_rrrs = sqrt(size_rrrs_t_8)
+    total_rrrrs_xx = np.sum(np.broadcast_to(J_star_t_15, _rrrrs))
+    total_rrrrs_xy = np.sum(np.broadcast_to(J_star_t_16, _rrrrs))
+    total_rrrrs_xz = np.sum(np.broadcast_to(J_star_t_17, _rrrrs))
+    total_rrrrs_yy = np.sum(np.broadcast_to(J_star_t_18, _rrrrs))
+    total_rrrrs_yz = np.sum(np.broadcast_to(J_star_t_19, _rrrrs))
+    total_rrrrs_zz = np.sum(np.broadcast_to(J_star_t_20, _rrrrs))
+    total_rrrrs_x_2 = np.sum(np.broadcast_to(rrrrs_platform_point_x, _rrrrs))
+    total_rrrrs_y_2 = np.sum(np.broadcast_to(rrrrs_platform_point_y, _rrrrs))
+    total_rrrrs_z_2 = np.sum(np.broadcast_to(rrrrs_platform_point_z, _rrrrs))
+    total_rrrrs_2 = np.sum(np.broadcast_to(size_rrrrs_t_3, _rrrrs))
+    # (rrrs-G2) length of the leg's lever arms, the measure of what is near singular
+    size_rrrs_t = rrrs_joint3_offset_x*rrrs_joint3_offset_x
+    size_rrrs_t_2 = rrrs_platform_joint_offset_x*rrrs_platform_joint_offset_x
+    size_rrrs_t_3 = 6.696672622239999e-07 + size_rrrs_t + size_rrrs_t_2
+    size_rrrs = sqrt(size_rrrs_t_3)
     # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
-    Kd_2_rrrs_t = 0.5*size_rrrs_t_2
-    Kd_2_rrrs_t_2 = 0.5*size_rrrs_t_3
+    Kd_2_rrrs_t = 0.5*size_rrrs_t
+    Kd_2_rrrs_t_2 = 0.5*size_rrrs_t_2
     # (rrrs-K19) squared amplitude
-    rho2_2_rrrs_t = size_rrrs*size_rrrs*size_rrrs_t_8
+    rho2_2_rrrs_t = size_rrrs*size_rrrs*size_rrrs_t_3
     # (rrrs-K26) the vector from joint 2 to the connection point, resolved along link 2
-    inv_size_rrrs_t_6 = 1.0/size_rrrs_t_2
+    inv_size_rrrs_t = 1.0/size_rrrs_t
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    inv_size_rrrs_t_7 = 1.0/size_rrrs_t_3
-    # (rrrs-G3) inertia tensor of link 1 about the origin of link 1
+    inv_size_rrrs_t_2 = 1.0/size_rrrs_t_2
+    # (rrrs-G4) inertia tensor of link 1 about the origin of link 1
     J_1_rrrs_t = rrrs_link1_centre_of_mass_x*rrrs_link1_centre_of_mass_x
     J_1_rrrs_t_2 = (
     J_1_rrrs_t + rrrs_link1_centre_of_mass_y*rrrs_link1_centre_of_mass_y +
         rrrs_link1_centre_of_mass_z*rrrs_link1_centre_of_mass_z
     )
     J_1_rrrs_xx = rrrs_link1_inertia_xx - rrrs_link1_mass*(J_1_rrrs_t - J_1_rrrs_t_2)
-    # (rrrs-G5) inertia tensor of link 2 about the origin of link 2
+    # (rrrs-G6) inertia tensor of link 2 about the origin of link 2
     J_2_rrrs_t = rrrs_link2_centre_of_mass_x*rrrs_link2_centre_of_mass_x
     J_2_rrrs_t_2 = rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_y
     J_2_rrrs_t_3 = rrrs_link2_centre_of_mass_z*rrrs_link2_centre_of_mass_z
@@ -742,9 +859,9 @@ def _prepare(p):
         rrrs_link2_centre_of_mass_y*rrrs_link2_centre_of_mass_z*rrrs_link2_mass
     )
     J_2_rrrs_zz = rrrs_link2_inertia_zz - rrrs_link2_mass*(J_2_rrrs_t_3 - J_2_rrrs_t_4)
-    # (rrrs-G6) connection point to the centre of mass of link 3
+    # (rrrs-G7) connection point to the centre of mass of link 3
     rho_tip_3_rrrs_x = rrrs_link3_centre_of_mass_x - rrrs_platform_joint_offset_x
-    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    # (rrrs-G9) inertia tensor of link 3 about the connection point
     J_3_rrrs_t = rho_tip_3_rrrs_x*rho_tip_3_rrrs_x
     J_3_rrrs_t_2 = rrrs_link3_centre_of_mass_y*rrrs_link3_centre_of_mass_y
     J_3_rrrs_t_3 = rrrs_link3_centre_of_mass_z*rrrs_link3_centre_of_mass_z
@@ -764,11 +881,11 @@ def _prepare(p):
     J_3_rrrs_zz = rrrs_link3_inertia_zz - rrrs_link3_mass*(J_3_rrrs_t_3 - J_3_rrrs_t_4)
     # (rrrs-N18) inertia tensor of the links from 2 outwards about joint 2
     Jc_2_rrrs_zz = J_2_rrrs_zz + J_3_rrrs_zz
-    # (rrrs-G4) first moment of link 2 about the origin of link 2
+    # (rrrs-G5) first moment of link 2 about the origin of link 2
     h_2_rrrs_x = rrrs_link2_centre_of_mass_x*rrrs_link2_mass
     h_2_rrrs_y = rrrs_link2_centre_of_mass_y*rrrs_link2_mass
     h_2_rrrs_z = rrrs_link2_centre_of_mass_z*rrrs_link2_mass
-    # (rrrs-G7) first moment of link 3 about the connection point
+    # (rrrs-G8) first moment of link 3 about the connection point
     h_3_rrrs_x = rho_tip_3_rrrs_x*rrrs_link3_mass
     h_3_rrrs_y = rrrs_link3_centre_of_mass_y*rrrs_link3_mass
     h_3_rrrs_z = rrrs_link3_centre_of_mass_z*rrrs_link3_mass
@@ -789,12 +906,16 @@ def _prepare(p):
     h_star_t_8 = rrrs_link3_mass*rrrs_platform_point_y
     h_star_t_9 = rrrs_link3_mass*rrrs_platform_point_z
     # (L3) inertia tensor about the platform origin
-    J_star_t_17 = rrrs_link3_mass*(size_rrrs_t_7 - size_rrrs_t_4)
-    J_star_t_18 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y
-    J_star_t_19 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z
-    J_star_t_20 = rrrs_link3_mass*(size_rrrs_t_7 - size_rrrs_t_5)
-    J_star_t_21 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
-    J_star_t_22 = rrrs_link3_mass*(size_rrrs_t_6 - size_rrrs_t_7)
+    J_star_t_21 = rrrs_platform_point_x*rrrs_platform_point_x
+    J_star_t_22 = rrrs_platform_point_y*rrrs_platform_point_y
+    J_star_t_23 = rrrs_platform_point_z*rrrs_platform_point_z
+    J_star_t_24 = J_star_t_21 + J_star_t_22 + J_star_t_23
+    J_star_t_25 = rrrs_link3_mass*(J_star_t_21 - J_star_t_24)
+    J_star_t_26 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_y
+    J_star_t_27 = rrrs_link3_mass*rrrs_platform_point_x*rrrs_platform_point_z
+    J_star_t_28 = rrrs_link3_mass*(J_star_t_22 - J_star_t_24)
+    J_star_t_29 = rrrs_link3_mass*rrrs_platform_point_y*rrrs_platform_point_z
+    J_star_t_30 = rrrs_link3_mass*(J_star_t_23 - J_star_t_24)
     # (rrrs-N4) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r0_x_2 = (
     gravity_x*rrrs_base_frame_xy + gravity_y*rrrs_base_frame_yy + gravity_z*rrrs_base_frame_zy
@@ -817,7 +938,7 @@ def _prepare(p):
     Sigma_3_rrrs_xx = trace_J_3_rrrs_rrrs - J_3_rrrs_xx
     Sigma_3_rrrs_yy = trace_J_3_rrrs_rrrs - J_3_rrrs_yy
     Sigma_3_rrrs_zz = trace_J_3_rrrs_rrrs - J_3_rrrs_zz
-    # (rrrs-G2) first moment of link 1 about the origin of link 1
+    # (rrrs-G3) first moment of link 1 about the origin of link 1
     h_1_rrrs_x = rrrs_link1_centre_of_mass_x*rrrs_link1_mass
     h_1_rrrs_y = rrrs_link1_centre_of_mass_y*rrrs_link1_mass
     h_1_rrrs_z = rrrs_link1_centre_of_mass_z*rrrs_link1_mass
@@ -836,16 +957,26 @@ def _prepare(p):
     )
     potential_t = b_rrrs_r0_z*rrrs_link1_mass
     potential_t_2 = rrrs_link2_mass*(b_rrrs_r0_z + rrrs_joint2_offset_x)
+    # (rrrs-K5) squared amplitude
+    inv_size_rrrs_t_3 = 1.0/size_rrrs_t_3
+    # (rrrs-K19) squared amplitude
+    inv_rho2_2_rrrs_t_4 = 1.0/rho2_2_rrrs_t
+    # (rrrs-V7) reciprocal vector 1
+    inv_size_rrrs = 1.0/size_rrrs
     total_rrrs = np.sum(np.broadcast_to(rrrs_link3_mass, _rrrs))
     total_rrrs_x = np.sum(np.broadcast_to(h_star_t_7, _rrrs))
     total_rrrs_y = np.sum(np.broadcast_to(h_star_t_8, _rrrs))
     total_rrrs_z = np.sum(np.broadcast_to(h_star_t_9, _rrrs))
-    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_17, _rrrs))
-    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_18, _rrrs))
-    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_19, _rrrs))
-    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_20, _rrrs))
-    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_21, _rrrs))
-    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_22, _rrrs))
+    total_rrrs_xx = np.sum(np.broadcast_to(J_star_t_25, _rrrs))
+    total_rrrs_xy = np.sum(np.broadcast_to(J_star_t_26, _rrrs))
+    total_rrrs_xz = np.sum(np.broadcast_to(J_star_t_27, _rrrs))
+    total_rrrs_yy = np.sum(np.broadcast_to(J_star_t_28, _rrrs))
+    total_rrrs_yz = np.sum(np.broadcast_to(J_star_t_29, _rrrs))
+    total_rrrs_zz = np.sum(np.broadcast_to(J_star_t_30, _rrrs))
+    total_rrrs_x_2 = np.sum(np.broadcast_to(rrrs_platform_point_x, _rrrs))
+    total_rrrs_y_2 = np.sum(np.broadcast_to(rrrs_platform_point_y, _rrrs))
+    total_rrrs_z_2 = np.sum(np.broadcast_to(rrrs_platform_point_z, _rrrs))
+    total_rrrs_2 = np.sum(np.broadcast_to(size_rrrs_t_3, _rrrs))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rrrrs + total_rrrs
     # (L2) first moment about the platform origin
@@ -853,23 +984,29 @@ def _prepare(p):
     h_star_y = h_star_t_2 + total_rrrrs_y + total_rrrs_y
     h_star_z = h_star_t_3 + total_rrrrs_z + total_rrrs_z
     # (L3) inertia tensor about the platform origin
-    J_star_xx = platform_inertia_xx + total_rrrrs_xx + total_rrrs_xx - J_star_t_5
+    J_star_xx = platform_inertia_xx - J_star_t_5 - total_rrrrs_xx - total_rrrs_xx
     J_star_xy = platform_inertia_xy - J_star_t_6 - total_rrrrs_xy - total_rrrs_xy
     J_star_xz = platform_inertia_xz - J_star_t_7 - total_rrrrs_xz - total_rrrs_xz
-    J_star_yy = platform_inertia_yy + total_rrrs_yy - J_star_t_8 - total_rrrrs_yy
+    J_star_yy = platform_inertia_yy - J_star_t_8 - total_rrrrs_yy - total_rrrs_yy
     J_star_yz = platform_inertia_yz - J_star_t_9 - total_rrrrs_yz - total_rrrs_yz
     J_star_zz = platform_inertia_zz - J_star_t_10 - total_rrrrs_zz - total_rrrs_zz
-    J_star_t_23 = J_star_xx - J_star_yy
-    J_star_t_24 = 0.5*J_star_t_23
-    J_star_t_25 = J_star_xx - J_star_zz
-    J_star_t_26 = 0.5*J_star_t_25
+    J_star_t_31 = J_star_xx - J_star_yy
+    J_star_t_32 = 0.5*J_star_t_31
+    J_star_t_33 = J_star_xx - J_star_zz
+    J_star_t_34 = 0.5*J_star_t_33
     # (M4) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
     Z_p_t_3 = gravity_z*m_star
+    # (C1) centroid of the platform points
+    b_c_x = 0.3333333333333333*total_rrrrs_x_2 + 0.3333333333333333*total_rrrs_x_2
+    b_c_y = 0.3333333333333333*total_rrrrs_y_2 + 0.3333333333333333*total_rrrs_y_2
+    b_c_z = 0.3333333333333333*total_rrrrs_z_2 + 0.3333333333333333*total_rrrs_z_2
+    # (C3) rms size of the legs, taken where the platform points coincide
+    legs_size = sqrt(0.3333333333333333*total_rrrrs_2 + 0.3333333333333333*total_rrrs_2)
     shared = {
-        "J_star_t_24": float(J_star_t_24),
-        "J_star_t_26": float(J_star_t_26),
+        "J_star_t_32": float(J_star_t_32),
+        "J_star_t_34": float(J_star_t_34),
         "J_star_xx": float(J_star_xx),
         "J_star_xy": float(J_star_xy),
         "J_star_xz": float(J_star_xz),
@@ -879,12 +1016,16 @@ def _prepare(p):
         "Z_p_t": float(Z_p_t),
         "Z_p_t_2": float(Z_p_t_2),
         "Z_p_t_3": float(Z_p_t_3),
+        "b_c_x": float(b_c_x),
+        "b_c_y": float(b_c_y),
+        "b_c_z": float(b_c_z),
         "gravity_x": float(gravity_x),
         "gravity_y": float(gravity_y),
         "gravity_z": float(gravity_z),
         "h_star_x": float(h_star_x),
         "h_star_y": float(h_star_y),
         "h_star_z": float(h_star_z),
+        "legs_size": float(legs_size),
         "m_star": float(m_star),
     }
     legs = {
@@ -946,9 +1087,12 @@ def _prepare(p):
             "h_4_rrrrs_x": np.broadcast_to(h_4_rrrrs_x, _rrrrs),
             "h_4_rrrrs_y": np.broadcast_to(h_4_rrrrs_y, _rrrrs),
             "h_4_rrrrs_z": np.broadcast_to(h_4_rrrrs_z, _rrrrs),
+            "inv_rho2_3_rrrrs_t_4": np.broadcast_to(inv_rho2_3_rrrrs_t_4, _rrrrs),
             "inv_rrrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrrs_platform_joint_offset_x, _rrrrs),
-            "inv_size_rrrrs_t_7": np.broadcast_to(inv_size_rrrrs_t_7, _rrrrs),
-            "inv_size_rrrrs_t_8": np.broadcast_to(inv_size_rrrrs_t_8, _rrrrs),
+            "inv_size_rrrrs": np.broadcast_to(inv_size_rrrrs, _rrrrs),
+            "inv_size_rrrrs_t_2": np.broadcast_to(inv_size_rrrrs_t_2, _rrrrs),
+            "inv_size_rrrrs_t_3": np.broadcast_to(inv_size_rrrrs_t_3, _rrrrs),
+            "inv_size_rrrrs_t_4": np.broadcast_to(inv_size_rrrrs_t_4, _rrrrs),
             "potential_t_3": np.broadcast_to(potential_t_3, _rrrrs),
             "potential_t_4": np.broadcast_to(potential_t_4, _rrrrs),
             "rho2_3_rrrrs_t": np.broadcast_to(rho2_3_rrrrs_t, _rrrrs),
@@ -976,7 +1120,7 @@ def _prepare(p):
             "rrrrs_platform_point_y": np.broadcast_to(rrrrs_platform_point_y, _rrrrs),
             "rrrrs_platform_point_z": np.broadcast_to(rrrrs_platform_point_z, _rrrrs),
             "size_rrrrs": np.broadcast_to(size_rrrrs, _rrrrs),
-            "size_rrrrs_t_8": np.broadcast_to(size_rrrrs_t_8, _rrrrs),
+            "size_rrrrs_t_3": np.broadcast_to(size_rrrrs_t_3, _rrrrs),
         },
         "rrrs": {
             "J_1_rrrs_xx": np.broadcast_to(J_1_rrrs_xx, _rrrs),
@@ -1020,9 +1164,12 @@ def _prepare(p):
             "h_3_rrrs_x": np.broadcast_to(h_3_rrrs_x, _rrrs),
             "h_3_rrrs_y": np.broadcast_to(h_3_rrrs_y, _rrrs),
             "h_3_rrrs_z": np.broadcast_to(h_3_rrrs_z, _rrrs),
+            "inv_rho2_2_rrrs_t_4": np.broadcast_to(inv_rho2_2_rrrs_t_4, _rrrs),
             "inv_rrrs_platform_joint_offset_x": np.broadcast_to(inv_rrrs_platform_joint_offset_x, _rrrs),
-            "inv_size_rrrs_t_6": np.broadcast_to(inv_size_rrrs_t_6, _rrrs),
-            "inv_size_rrrs_t_7": np.broadcast_to(inv_size_rrrs_t_7, _rrrs),
+            "inv_size_rrrs": np.broadcast_to(inv_size_rrrs, _rrrs),
+            "inv_size_rrrs_t": np.broadcast_to(inv_size_rrrs_t, _rrrs),
+            "inv_size_rrrs_t_2": np.broadcast_to(inv_size_rrrs_t_2, _rrrs),
+            "inv_size_rrrs_t_3": np.broadcast_to(inv_size_rrrs_t_3, _rrrs),
             "potential_t": np.broadcast_to(potential_t, _rrrs),
             "potential_t_2": np.broadcast_to(potential_t_2, _rrrs),
             "rho2_2_rrrs_t": np.broadcast_to(rho2_2_rrrs_t, _rrrs),
@@ -1048,7 +1195,7 @@ def _prepare(p):
             "rrrs_platform_point_y": np.broadcast_to(rrrs_platform_point_y, _rrrs),
             "rrrs_platform_point_z": np.broadcast_to(rrrs_platform_point_z, _rrrs),
             "size_rrrs": np.broadcast_to(size_rrrs, _rrrs),
-            "size_rrrs_t_8": np.broadcast_to(size_rrrs_t_8, _rrrs),
+            "size_rrrs_t_3": np.broadcast_to(size_rrrs_t_3, _rrrs),
         },
     }
     return shared, legs
@@ -1104,12 +1251,13 @@ class _Floats:
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
+    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
 
 
 class _Arrays:
     """Functions on arrays over states: the way for batches."""
 
-    sqrt, sin, cos, atan2 = np.sqrt, np.sin, np.cos, np.arctan2
+    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
 
 _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
@@ -1117,8 +1265,8 @@ _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 def _evaluate(plan, p, **vectors):
     """Arrays of a plan at the vectors that it reads."""
-    p = _DEFAULT if p is None else p
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors.values()))
+    p = _given(p)
+    lead = _lead(**vectors)
     chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
     return _run(plan, p, *chosen)
 
@@ -1205,7 +1353,7 @@ def _run_block(plan, p, vectors, outputs):
 # dynamics: 1538 mul, 1196 add, 12 div, 6 sqrt, 2 trig
 def _dynamics_before(c, X, V, f):
     (
-    J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
+    J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz, J_star_zz,
         Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z,
     ) = c
     X_0 = X[0]
@@ -1260,12 +1408,12 @@ def _dynamics_before(c, X, V, f):
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_24*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_24*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_24*R_zy
-    J_star_t_4 = J_star_t_26*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_26*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_26*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_32*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_32*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_32*R_zy
+    J_star_t_4 = J_star_t_34*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_34*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_34*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
@@ -1273,8 +1421,8 @@ def _dynamics_before(c, X, V, f):
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
+    J_star_t_14 = J_star_t_6*R_zz - J_star_t_3*R_zy
+    J_star_t_15 = 2.0*J_star_t_14 - J_star_xx
     # (M4) centripetal force and weight of the platform
     Z_p_t_4 = h_star_in_base_z*omega_y - h_star_in_base_y*omega_z
     Z_p_t_5 = h_star_in_base_x*omega_z - h_star_in_base_z*omega_x
@@ -1298,7 +1446,7 @@ def _dynamics_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, h_star_in_base_x, h_star_in_base_y, h_star_in_base_z,
@@ -1321,13 +1469,13 @@ def _dynamics_rrrrs(c, k, x, s, f):
         branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y, d_c_rrrrs_yy,
         d_phi_4_rrrrs_t, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x,
         h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8,
+        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
         rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
         rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
         rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
         rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs = x
     (
@@ -1390,12 +1538,12 @@ def _dynamics_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -1466,7 +1614,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
     )
-    # (rrrrs-G10) inertia tensor of link 4 about the connection point
+    # (rrrrs-G11) inertia tensor of link 4 about the connection point
     J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs
     _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs
     J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs
@@ -1488,7 +1636,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs
     _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs
     _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs
-    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    # (rrrrs-G7) first moment of link 3 about the origin of link 3
     h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
     h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
     # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
@@ -1990,7 +2138,7 @@ def _dynamics_rrrrs(c, k, x, s, f):
     H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
     H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
     H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (Q_rrrrs_t_12, Q_rrrrs_t_13, Q_rrrrs_t_14, Q_rrrrs_t_16, Q_rrrrs_t_17, Q_rrrrs_t_19,
         M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11,
@@ -2014,13 +2162,13 @@ def _dynamics_rrrs(c, k, x, s, f):
         Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs,
         d_Gamma_2_rrrs_t, d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, g_r0_x_2, g_r0_y_2,
         g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z, h_3_rrrs_x,
-        h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
+        inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
         rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -2071,12 +2219,12 @@ def _dynamics_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -2135,7 +2283,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
     )
-    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    # (rrrs-G9) inertia tensor of link 3 about the connection point
     J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs
     _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs
     J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs
@@ -2466,7 +2614,7 @@ def _dynamics_rrrs(c, k, x, s, f):
     H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
     H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
     H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (Q_rrrs_t_12, Q_rrrs_t_13, Q_rrrs_t_14, Q_rrrs_t_16, Q_rrrs_t_17, Q_rrrs_t_19, M_ta_t_15,
         M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_20, M_ta_t_21, M_ta_t_22, M_ta_t_23, M_ta_t_24,
@@ -2520,7 +2668,7 @@ def _dynamics_after(c, s, t, f):
     M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3
     M_aa_yy = J_star_t_12 - total_rrrrs_yy_3 - total_rrrs_yy_3
     M_aa_yz = J_star_t_13 + total_rrrrs_yz_3 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3
+    M_aa_zz = -J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rrrrs_x + total_rrrs_x
     Z_t_y = Z_p_y + total_rrrrs_y + total_rrrs_y
@@ -2542,7 +2690,7 @@ def _dynamics_after(c, s, t, f):
 # M: 759 mul, 580 add, 12 div, 6 sqrt, 2 trig
 def _M_before(c, X, f):
     (
-    J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
+    J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yz, h_star_x, h_star_y,
         h_star_z,
     ) = c
     X_0 = X[0]
@@ -2584,12 +2732,12 @@ def _M_before(c, X, f):
     h_star_in_base_y = R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z
     h_star_in_base_z = R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z
     # (L3) inertia tensor about the platform origin
-    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_24*R_xy
-    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_24*R_yy
-    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_24*R_zy
-    J_star_t_4 = J_star_t_26*R_xz - J_star_xz*R_xx
-    J_star_t_5 = J_star_t_26*R_yz - J_star_xz*R_yx
-    J_star_t_6 = J_star_t_26*R_zz - J_star_xz*R_zx
+    J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_32*R_xy
+    J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_32*R_yy
+    J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_32*R_zy
+    J_star_t_4 = J_star_t_34*R_xz - J_star_xz*R_xx
+    J_star_t_5 = J_star_t_34*R_yz - J_star_xz*R_yx
+    J_star_t_6 = J_star_t_34*R_zz - J_star_xz*R_zx
     J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz
     J_star_t_8 = 2.0*J_star_t_7 + J_star_xx
     J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz - J_star_t_5*R_xz
@@ -2597,9 +2745,9 @@ def _M_before(c, X, f):
     J_star_t_11 = J_star_t_2*R_yy - J_star_t_5*R_yz
     J_star_t_12 = 2.0*J_star_t_11 + J_star_xx
     J_star_t_13 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_6*R_yz
-    J_star_t_14 = J_star_t_3*R_zy - J_star_t_6*R_zz
-    J_star_t_15 = 2.0*J_star_t_14 + J_star_xx
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    J_star_t_14 = J_star_t_6*R_zz - J_star_t_3*R_zy
+    J_star_t_15 = 2.0*J_star_t_14 - J_star_xx
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_in_base_x,
         h_star_in_base_y, h_star_in_base_z, J_star_t_8, J_star_t_9, J_star_t_10, J_star_t_12,
@@ -2618,13 +2766,13 @@ def _M_rrrrs(c, k, x, s, f):
         Jc_2_rrrrs_t, Jc_2_rrrrs_t_2, Jc_3_rrrrs_zz, Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs,
         branch_3_rrrrs, d_G_rrrrs_t, d_Gamma_3_rrrrs_t, d_Gamma_3_rrrrs_y, d_c_rrrrs_yy,
         d_phi_4_rrrrs_t, h_3_rrrrs_x, h_3_rrrrs_y, h_4_rrrrs_x, h_4_rrrrs_y, h_4_rrrrs_z,
-        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t,
+        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t,
         rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
         rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
         rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
         rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, = x
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -2684,12 +2832,12 @@ def _M_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -2760,7 +2908,7 @@ def _M_rrrrs(c, k, x, s, f):
     axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
         axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x
     )
-    # (rrrrs-G10) inertia tensor of link 4 about the connection point
+    # (rrrrs-G11) inertia tensor of link 4 about the connection point
     J_4_rrrrs_t = J_4_rrrrs_xy*s_4_rrrrs
     _x = J_4_rrrrs_t + J_4_rrrrs_xx*c_4_rrrrs
     J_4_rrrrs_t_2 = J_4_rrrrs_xy*c_4_rrrrs
@@ -2782,7 +2930,7 @@ def _M_rrrrs(c, k, x, s, f):
     _x_5 = Jc_3_rrrrs_t_2 - Jc_3_rrrrs_yy*s_3_rrrrs
     _x_6 = Jc_3_rrrrs_xz*c_3_rrrrs - Jc_3_rrrrs_yz*s_3_rrrrs
     _y_2 = Jc_3_rrrrs_xz*s_3_rrrrs + Jc_3_rrrrs_yz*c_3_rrrrs
-    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    # (rrrrs-G7) first moment of link 3 about the origin of link 3
     h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
     h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
     # (rrrrs-N34) inertia tensor of the links from 2 outwards about joint 2
@@ -2964,7 +3112,7 @@ def _M_rrrrs(c, k, x, s, f):
         d1_G_rrrrs_t*r_2_rrrrs_r1_x
     )
     d1_P_2_rrrrs = d1_Gamma_2_rrrrs + d1_P_2_rrrrs_t
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (Q_rrrrs_t_12, Q_rrrrs_t_13, Q_rrrrs_t_14, Q_rrrrs_t_16, Q_rrrrs_t_17, Q_rrrrs_t_19,
         M_ta_t_3, M_ta_t_4, M_ta_t_5, M_ta_t_6, M_ta_t_8, M_ta_t_9, M_ta_t_10, M_ta_t_11,
@@ -2983,13 +3131,13 @@ def _M_rrrs(c, k, x, s, f):
         J_3_rrrs_xy, J_3_rrrs_xz, J_3_rrrs_yy, J_3_rrrs_yz, J_3_rrrs_zz, Jc_2_rrrs_zz,
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, d_Gamma_2_rrrs_t,
         d_Gamma_2_rrrs_y, d_c_rrrs_yy, d_phi_3_rrrs_t, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z,
-        inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6, inv_size_rrrs_t_7, rho2_2_rrrs_t,
+        inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t,
         rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx,
         rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy,
         rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z,
         rrrs_joint2_offset_x, rrrs_joint3_offset_x, rrrs_platform_joint_offset_x,
         rrrs_platform_point_x, rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs,
-        size_rrrs_t_8,
+        size_rrrs_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -3037,12 +3185,12 @@ def _M_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -3101,7 +3249,7 @@ def _M_rrrs(c, k, x, s, f):
     axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
         axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x
     )
-    # (rrrs-G8) inertia tensor of link 3 about the connection point
+    # (rrrs-G9) inertia tensor of link 3 about the connection point
     J_3_rrrs_t = J_3_rrrs_xy*s_3_rrrs
     _x_7 = J_3_rrrs_t + J_3_rrrs_xx*c_3_rrrs
     J_3_rrrs_t_2 = J_3_rrrs_xy*c_3_rrrs
@@ -3208,7 +3356,7 @@ def _M_rrrs(c, k, x, s, f):
     M_aa_t_10 = M_ta_t_16*q_rrrs_in_base_z - M_ta_t_23*q_rrrs_in_base_x
     M_aa_t_11 = M_ta_t_17*q_rrrs_in_base_z - M_ta_t_24*q_rrrs_in_base_x
     M_aa_t_12 = M_ta_t_17*q_rrrs_in_base_y - M_ta_t_21*q_rrrs_in_base_x
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (Q_rrrs_t_12, Q_rrrs_t_13, Q_rrrs_t_14, Q_rrrs_t_16, Q_rrrs_t_17, Q_rrrs_t_19, M_ta_t_15,
         M_ta_t_16, M_ta_t_17, M_ta_t_18, M_ta_t_20, M_ta_t_21, M_ta_t_22, M_ta_t_23, M_ta_t_24,
@@ -3256,7 +3404,7 @@ def _M_after(c, s, t, f):
     M_aa_xz = J_star_t_10 - total_rrrrs_xz_3 - total_rrrs_xz_3
     M_aa_yy = J_star_t_12 - total_rrrrs_yy_3 - total_rrrs_yy_3
     M_aa_yz = J_star_t_13 + total_rrrrs_yz_3 + total_rrrs_yz_3
-    M_aa_zz = J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3
+    M_aa_zz = -J_star_t_15 - total_rrrrs_zz_3 - total_rrrs_zz_3
     ok = True
     return (
     ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_xz, M_tt_xz, M_tt_yy, M_tt_yz, M_tt_yz, M_tt_zz, M_ta_xx,
@@ -3346,7 +3494,7 @@ def _Z_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
@@ -3365,13 +3513,13 @@ def _Z_rrrrs(c, k, x, s, f):
         Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs,
         branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x,
         h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8,
+        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
         rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
         rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
         rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
         rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs = x
     (
@@ -3434,12 +3582,12 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -3821,7 +3969,7 @@ def _Z_rrrrs(c, k, x, s, f):
     # (rrrrs-N96) remainder without the acceleration in: inertia and weight of the leg along the extra freedom of joint 2
     P_2_rrrrs_o_t = G_rrrrs_o_t_2*r_2_rrrrs_r1_y - G_rrrrs_o_t*r_2_rrrrs_r1_x
     P_2_rrrrs_o = N_2_rrrrs_o_z + P_2_rrrrs_o_t
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (U_rrrrs_in_base_x, U_rrrrs_in_base_y, U_rrrrs_in_base_z, Z_a_t, Z_a_t_2, Z_a_t_3,),
         (P_2_rrrrs_o,),
@@ -3835,13 +3983,13 @@ def _Z_rrrs(c, k, x, s, f):
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
         Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs, g_r0_x_2,
         g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z,
-        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
+        inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
         rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -3892,12 +4040,12 @@ def _Z_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -4167,7 +4315,7 @@ def _Z_rrrs(c, k, x, s, f):
     Z_a_t_4 = U_rrrs_in_base_z*q_rrrs_in_base_y - U_rrrs_in_base_y*q_rrrs_in_base_z
     Z_a_t_5 = U_rrrs_in_base_x*q_rrrs_in_base_z - U_rrrs_in_base_z*q_rrrs_in_base_x
     Z_a_t_6 = U_rrrs_in_base_y*q_rrrs_in_base_x - U_rrrs_in_base_x*q_rrrs_in_base_y
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (U_rrrs_in_base_x, U_rrrs_in_base_y, U_rrrs_in_base_z, Z_a_t_4, Z_a_t_5, Z_a_t_6,), (),
     )
@@ -4228,7 +4376,7 @@ def _H_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -4237,13 +4385,13 @@ def _H_rrrrs(c, k, x, s, f):
     sin = f.sin
     cos = f.cos
     (
-    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_7,
-        inv_size_rrrrs_t_8, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
+        inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
         rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
         rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
         rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
         rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, = x
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -4303,12 +4451,12 @@ def _H_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
@@ -4397,7 +4545,7 @@ def _H_rrrrs(c, k, x, s, f):
     H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
     H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
     H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (), (w_1_rrrrs_t_3, w_1_rrrrs_t_4, w_1_rrrrs_t_5, H_a_1_rrrrs_x, H_a_1_rrrrs_y,
         H_a_1_rrrrs_z, 1.0, -w_3_rrrrs_t, -w_3_rrrrs_t_2, -w_3_rrrrs_t_3, H_a_3_rrrrs_x,
@@ -4408,13 +4556,13 @@ def _H_rrrrs(c, k, x, s, f):
 def _H_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
-    Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+    Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t, inv_size_rrrs_t_2,
+        rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -4462,12 +4610,12 @@ def _H_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
@@ -4540,7 +4688,7 @@ def _H_rrrs(c, k, x, s, f):
     H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
     H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
     H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (), (w_1_rrrs_t_3, w_1_rrrs_t_4, w_1_rrrs_t_5, H_a_1_rrrs_x, H_a_1_rrrs_y, H_a_1_rrrs_z,
         -w_2_rrrs_t, -w_2_rrrs_t_2, -w_2_rrrs_t_3, H_a_2_rrrs_x, H_a_2_rrrs_y, H_a_2_rrrs_z,),
@@ -4671,7 +4819,7 @@ def _required_before(c, X, V, A, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
@@ -4691,13 +4839,13 @@ def _required_rrrrs(c, k, x, s, f):
         Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs,
         branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x,
         h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8,
+        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
         rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
         rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
         rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
         rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_link3_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs, ydd_2_rrrrs = x
     (
@@ -4761,12 +4909,12 @@ def _required_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -5183,7 +5331,7 @@ def _required_rrrrs(c, k, x, s, f):
     # (rrrrs-N93) inertia and weight of the leg along the extra freedom of joint 2
     P_2_rrrrs_t = G_rrrrs_t_2*r_2_rrrrs_r1_y - G_rrrrs_t*r_2_rrrrs_r1_x
     P_2_rrrrs = N_2_rrrrs_z + P_2_rrrrs_t
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (c_rrrrs_in_base_x, c_rrrrs_in_base_y, c_rrrrs_in_base_z, R_a_t, R_a_t_2, R_a_t_3,),
         (P_2_rrrrs, w_1_rrrrs_t_3, w_1_rrrrs_t_4, w_1_rrrrs_t_5, H_a_1_rrrrs_x, H_a_1_rrrrs_y,
@@ -5200,13 +5348,13 @@ def _required_rrrs(c, k, x, s, f):
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
         Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs, g_r0_x_2,
         g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z,
-        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
+        inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
         rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -5258,12 +5406,12 @@ def _required_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -5561,7 +5709,7 @@ def _required_rrrs(c, k, x, s, f):
     R_a_t_4 = c_rrrs_in_base_z*q_rrrs_in_base_y - c_rrrs_in_base_y*q_rrrs_in_base_z
     R_a_t_5 = c_rrrs_in_base_x*q_rrrs_in_base_z - c_rrrs_in_base_z*q_rrrs_in_base_x
     R_a_t_6 = c_rrrs_in_base_y*q_rrrs_in_base_x - c_rrrs_in_base_x*q_rrrs_in_base_y
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (c_rrrs_in_base_x, c_rrrs_in_base_y, c_rrrs_in_base_z, R_a_t_4, R_a_t_5, R_a_t_6,),
         (w_1_rrrs_t_3, w_1_rrrs_t_4, w_1_rrrs_t_5, H_a_1_rrrs_x, H_a_1_rrrs_y, H_a_1_rrrs_z,
@@ -5624,7 +5772,7 @@ def _inverse_kinematics_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -5634,13 +5782,13 @@ def _inverse_kinematics_rrrrs(c, k, x, s, f):
     cos = f.cos
     atan2 = f.atan2
     (
-    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_7,
-        inv_size_rrrrs_t_8, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
+    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_size_rrrrs_t_2,
+        inv_size_rrrrs_t_3, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
         rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
         rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
         rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
         rrrrs_joint4_offset_x, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs_t_8,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, = x
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -5697,7 +5845,7 @@ def _inverse_kinematics_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
     inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
     # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
@@ -5713,10 +5861,10 @@ def _inverse_kinematics_rrrrs(c, k, x, s, f):
     )
     # (rrrrs-K34) displacement of joint 4
     q_4_rrrrs = (
-    atan2(-inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x,
-        inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x)
+    atan2(-inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x,
+        inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x)
     )
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
     return (ok, (), (q_1_rrrrs, y_2_extra_rrrrs, q_3_rrrrs, q_4_rrrrs,),)
 
 
@@ -5724,13 +5872,13 @@ def _inverse_kinematics_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     atan2 = f.atan2
     (
-    Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
-        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
-        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
-        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+    Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_size_rrrs_t, inv_size_rrrs_t_2,
+        rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy, rrrs_base_frame_xz,
+        rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz, rrrs_base_frame_zx,
+        rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x, rrrs_base_point_y,
+        rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
-        rrrs_platform_point_z, size_rrrs_t_8,
+        rrrs_platform_point_z, size_rrrs_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -5778,7 +5926,7 @@ def _inverse_kinematics_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
     inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
     # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
@@ -5792,10 +5940,10 @@ def _inverse_kinematics_rrrs(c, k, x, s, f):
     )
     # (rrrs-K31) displacement of joint 3
     q_3_rrrs = (
-    atan2(-inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
-        inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x)
+    atan2(-inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x,
+        inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x)
     )
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0)
     return (ok, (), (q_1_rrrs, q_2_rrrs, q_3_rrrs,),)
 
 
@@ -5848,7 +5996,7 @@ def _joint_rates_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z,), (),
@@ -5861,13 +6009,13 @@ def _joint_rates_rrrrs(c, k, x, s, f):
     cos = f.cos
     (
     Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
-        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t,
+        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t,
         rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
         rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
         rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
         rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs = x
     (
@@ -5930,12 +6078,12 @@ def _joint_rates_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -6042,7 +6190,7 @@ def _joint_rates_rrrrs(c, k, x, s, f):
         S_dot_rest_rrrrs_y*axis_z_rrrrs_axes4_in_base_y +
         S_dot_rest_rrrrs_z*axis_z_rrrrs_axes4_in_base_z)/v_1_rrrrs_z
     )
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (ok, (), (qd_1_rrrrs, yd_2_rrrrs, -qd_3_rrrrs, qd_4_rrrrs,),)
 
 
@@ -6050,12 +6198,12 @@ def _joint_rates_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_rrrs_platform_joint_offset_x,
-        inv_size_rrrs_t_6, inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -6106,12 +6254,12 @@ def _joint_rates_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -6179,7 +6327,7 @@ def _joint_rates_rrrs(c, k, x, s, f):
     (S_dot_rrrs_x*axis_z_rrrs_axes3_in_base_x + S_dot_rrrs_y*axis_z_rrrs_axes3_in_base_y +
         S_dot_rrrs_z*axis_z_rrrs_axes3_in_base_z)/v_1_rrrs_z
     )
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (ok, (), (qd_1_rrrs, -qd_2_rrrs, qd_3_rrrs,),)
 
 
@@ -6245,7 +6393,7 @@ def _joint_accelerations_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
@@ -6259,13 +6407,13 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     cos = f.cos
     (
     Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs,
-        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, rho2_3_rrrrs_t,
+        inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, rho2_3_rrrrs_t,
         rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz, rrrrs_base_frame_yx,
         rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx, rrrrs_base_frame_zy,
         rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y, rrrrs_base_point_z,
         rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs, ydd_2_rrrrs = x
     (
@@ -6329,12 +6477,12 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -6538,7 +6686,7 @@ def _joint_accelerations_rrrrs(c, k, x, s, f):
     qdd_3_rrrrs = inv_r_3_rrrrs_r0_y*rel_rrrrs_x
     qdd_4_rrrrs = inv_rrrrs_platform_joint_offset_x*(rel_rrrrs_y + qdd_3_rrrrs*r_3_rrrrs_r0_x)
     qdd_1_rrrrs = inv_v_1_rrrrs_z*rel_rrrrs_z
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (ok, (), (qdd_1_rrrrs, ydd_2_rrrrs, -qdd_3_rrrrs, qdd_4_rrrrs,),)
 
 
@@ -6546,12 +6694,12 @@ def _joint_accelerations_rrrs(c, k, x, s, f):
     sqrt = f.sqrt
     (
     Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_rrrs_platform_joint_offset_x,
-        inv_size_rrrs_t_6, inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx,
-        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
-        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
-        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
-        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        inv_size_rrrs_t, inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
+        rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
+        rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
+        rrrs_platform_joint_offset_x, rrrs_platform_point_x, rrrs_platform_point_y,
+        rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -6603,12 +6751,12 @@ def _joint_accelerations_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -6759,7 +6907,7 @@ def _joint_accelerations_rrrs(c, k, x, s, f):
     qdd_2_rrrs = inv_r_2_rrrs_r0_y*rel_rrrs_x
     qdd_3_rrrs = inv_rrrs_platform_joint_offset_x*(rel_rrrs_y + qdd_2_rrrs*r_2_rrrs_r0_x)
     qdd_1_rrrs = inv_v_1_rrrs_z*rel_rrrs_z
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (ok, (), (qdd_1_rrrs, -qdd_2_rrrs, qdd_3_rrrs,),)
 
 
@@ -6825,7 +6973,7 @@ def _legs_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
@@ -6845,13 +6993,13 @@ def _legs_rrrrs(c, k, x, s, f):
         Sigma_3_rrrrs_zz, Sigma_4_rrrrs_xx, Sigma_4_rrrrs_yy, Sigma_4_rrrrs_zz, branch_1_rrrrs,
         branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_y, h_1_rrrrs_z, h_2_rrrrs_x,
         h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x, h_4_rrrrs_y,
-        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8,
+        h_4_rrrrs_z, inv_rrrrs_platform_joint_offset_x, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3,
         rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
         rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
         rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
         rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
         rrrrs_link3_mass, rrrrs_link4_mass, rrrrs_platform_joint_offset_x, rrrrs_platform_point_x,
-        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_8,
+        rrrrs_platform_point_y, rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, yd_2_rrrrs, ydd_2_rrrrs = x
     (
@@ -6915,12 +7063,12 @@ def _legs_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-V2) from joint 3 to the connection point, along the links
     r_3_rrrrs_t = rrrrs_platform_joint_offset_x*s_4_rrrrs
@@ -7306,7 +7454,7 @@ def _legs_rrrrs(c, k, x, s, f):
     axis_x_rrrrs_axes4_z*c_true_rrrrs_x + axis_y_rrrrs_axes4_in_base_z*c_true_rrrrs_y +
         axis_z_rrrrs_axes4_in_base_z*c_true_rrrrs_z
     )
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
     return (
     ok, (), (c_true_rrrrs_in_base_x, c_true_rrrrs_in_base_y, c_true_rrrrs_in_base_z,
         w_1_rrrrs_t_3, w_1_rrrrs_t_4, w_1_rrrrs_t_5, -w_3_rrrrs_t, -w_3_rrrrs_t_2,
@@ -7322,13 +7470,13 @@ def _legs_rrrs(c, k, x, s, f):
         Kd_2_rrrs_t, Kd_2_rrrs_t_2, Sigma_2_rrrs_xx, Sigma_2_rrrs_yy, Sigma_2_rrrs_zz,
         Sigma_3_rrrs_xx, Sigma_3_rrrs_yy, Sigma_3_rrrs_zz, branch_1_rrrs, branch_2_rrrs, g_r0_x_2,
         g_r0_y_2, g_r0_z_2, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y, h_2_rrrs_z,
-        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t_6,
-        inv_size_rrrs_t_7, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
+        h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_rrrs_platform_joint_offset_x, inv_size_rrrs_t,
+        inv_size_rrrs_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
         rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_link3_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_8,
+        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
     ) = k
     (
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
@@ -7380,12 +7528,12 @@ def _legs_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-V2) from joint 2 to the connection point, along the links
     r_2_rrrs_t = rrrs_platform_joint_offset_x*s_3_rrrs
@@ -7675,7 +7823,7 @@ def _legs_rrrs(c, k, x, s, f):
     axis_x_rrrs_axes3_z*c_true_rrrs_x + axis_y_rrrs_axes3_in_base_z*c_true_rrrs_y +
         axis_z_rrrs_axes3_in_base_z*c_true_rrrs_z
     )
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
     return (
     ok, (), (c_true_rrrs_in_base_x, c_true_rrrs_in_base_y, c_true_rrrs_in_base_z, w_1_rrrs_t_3,
         w_1_rrrs_t_4, w_1_rrrs_t_5, -w_2_rrrs_t, -w_2_rrrs_t_2, -w_2_rrrs_t_3,),
@@ -7725,7 +7873,7 @@ def _potential_before(c, X, f):
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + m_star*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + m_star*t_z)
     )
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, potential_t_5,), (),
     )
@@ -7739,14 +7887,14 @@ def _potential_rrrrs(c, k, x, s, f):
     Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, b_rrrrs_r0_x, b_rrrrs_r0_y, b_rrrrs_r0_z, branch_1_rrrrs,
         branch_3_rrrrs, g_r0_x, g_r0_y, g_r0_z, h_1_rrrrs_x, h_1_rrrrs_y, h_1_rrrrs_z,
         h_2_rrrrs_x, h_2_rrrrs_y, h_2_rrrrs_z, h_3_rrrrs_x, h_3_rrrrs_y, h_3_rrrrs_z, h_4_rrrrs_x,
-        h_4_rrrrs_y, h_4_rrrrs_z, inv_size_rrrrs_t_7, inv_size_rrrrs_t_8, potential_t_3,
+        h_4_rrrrs_y, h_4_rrrrs_z, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, potential_t_3,
         potential_t_4, rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy,
         rrrrs_base_frame_xz, rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz,
         rrrrs_base_frame_zx, rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x,
         rrrrs_base_point_y, rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x,
         rrrrs_joint4_offset_x, rrrrs_link1_mass, rrrrs_link2_mass, rrrrs_link3_mass,
         rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
-        rrrrs_platform_point_z, size_rrrrs_t_8,
+        rrrrs_platform_point_z, size_rrrrs_t_3,
     ) = k
     y_2_extra_rrrrs, = x
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
@@ -7803,12 +7951,12 @@ def _potential_rrrrs(c, k, x, s, f):
     # (rrrrs-K24) root, with the sign of the branch
     root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
     # (rrrrs-K30) from the origin of joint 4 to the connection point
-    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_7*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
     # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
-    c_4_rrrrs = inv_size_rrrrs_t_8*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
     # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
     s_4_rrrrs = (
-    inv_size_rrrrs_t_7*inv_size_rrrrs_t_8*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
     )
     # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
     inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
@@ -7820,13 +7968,13 @@ def _potential_rrrrs(c, k, x, s, f):
     c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
     # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
     s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
-    # (rrrrs-G6) first moment of link 3 about the origin of link 3
+    # (rrrrs-G7) first moment of link 3 about the origin of link 3
     h_3_rrrrs_r0_x = c_3_rrrrs*h_3_rrrrs_x - h_3_rrrrs_y*s_3_rrrrs
     h_3_rrrrs_r0_y = c_3_rrrrs*h_3_rrrrs_y + h_3_rrrrs_x*s_3_rrrrs
     # (V1) potential energy
     b_rrrrs_r1_x = b_rrrrs_r0_y*s_1_rrrrs - b_rrrrs_r0_x*c_1_rrrrs
     b_rrrrs_r1_y = -b_rrrrs_r0_x*s_1_rrrrs - b_rrrrs_r0_y*c_1_rrrrs
-    # (rrrrs-G9) first moment of link 4 about the connection point
+    # (rrrrs-G10) first moment of link 4 about the connection point
     h_4_rrrrs_r0_x = c_4_rrrrs*h_4_rrrrs_x + h_4_rrrrs_y*s_4_rrrrs
     h_4_rrrrs_r0_y = c_4_rrrrs*h_4_rrrrs_y - h_4_rrrrs_x*s_4_rrrrs
     h_4_rrrrs_r1_x = c_3_rrrrs*h_4_rrrrs_r0_x - h_4_rrrrs_r0_y*s_3_rrrrs
@@ -7850,7 +7998,7 @@ def _potential_rrrrs(c, k, x, s, f):
         h_4_rrrrs_z + b_rrrrs_r1_x*rrrrs_link1_mass + b_rrrrs_r1_x*rrrrs_link2_mass +
         b_rrrrs_r1_x*rrrrs_link3_mass)
     )
-    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_8) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0)
     return (ok, (potential_t_10,), (),)
 
 
@@ -7859,13 +8007,13 @@ def _potential_rrrs(c, k, x, s, f):
     (
     Kd_2_rrrs_t, Kd_2_rrrs_t_2, b_rrrs_r0_x, b_rrrs_r0_y, branch_1_rrrs, branch_2_rrrs, g_r0_x_2,
         g_r0_y_2, g_r0_z_2, h_1_rrrs_x, h_1_rrrs_y, h_1_rrrs_z, h_2_rrrs_x, h_2_rrrs_y,
-        h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_size_rrrs_t_6, inv_size_rrrs_t_7,
+        h_2_rrrs_z, h_3_rrrs_x, h_3_rrrs_y, h_3_rrrs_z, inv_size_rrrs_t, inv_size_rrrs_t_2,
         potential_t, potential_t_2, rho2_2_rrrs_t, rrrs_base_frame_xx, rrrs_base_frame_xy,
         rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy, rrrs_base_frame_yz,
         rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz, rrrs_base_point_x,
         rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x, rrrs_joint3_offset_x,
         rrrs_link1_mass, rrrs_link2_mass, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
-        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs_t_8,
+        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs_t_3,
     ) = k
     t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
     # (rrrs-K1) from the base point to the connection point
@@ -7913,12 +8061,12 @@ def _potential_rrrs(c, k, x, s, f):
     # (rrrs-K21) root, with the sign of the branch
     root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
     # (rrrs-K27) from the origin of joint 3 to the connection point
-    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t_6*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
     # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
-    c_3_rrrs = inv_size_rrrs_t_7*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
     # (rrrs-K30) sine of the angle of joint 3 from its reference direction
     s_3_rrrs = (
-    inv_size_rrrs_t_6*inv_size_rrrs_t_7*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
     )
     # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
     inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
@@ -7933,7 +8081,7 @@ def _potential_rrrs(c, k, x, s, f):
     # (V1) potential energy
     b_rrrs_r1_x = b_rrrs_r0_y*s_1_rrrs - b_rrrs_r0_x*c_1_rrrs
     b_rrrs_r1_y = -b_rrrs_r0_x*s_1_rrrs - b_rrrs_r0_y*c_1_rrrs
-    # (rrrs-G7) first moment of link 3 about the connection point
+    # (rrrs-G8) first moment of link 3 about the connection point
     h_3_rrrs_r0_x = c_3_rrrs*h_3_rrrs_x + h_3_rrrs_y*s_3_rrrs
     h_3_rrrs_r0_y = c_3_rrrs*h_3_rrrs_y - h_3_rrrs_x*s_3_rrrs
     # (V1) potential energy
@@ -7948,7 +8096,7 @@ def _potential_rrrs(c, k, x, s, f):
         (g_r0_y_2*s_1_rrrs - c_1_rrrs*g_r0_x_2)*(h_1_rrrs_z + h_2_rrrs_z + h_3_rrrs_z +
         b_rrrs_r1_x*rrrs_link1_mass + b_rrrs_r1_x*rrrs_link2_mass)
     )
-    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_8) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0)
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0)
     return (ok, (potential_t_7,), (),)
 
 
@@ -7961,12 +8109,419 @@ def _potential_after(c, s, t, f):
     return (ok, (potential,),)
 
 
+# condition: 369 mul, 207 add, 12 div, 13 sqrt, 2 trig
+def _condition_before(c, X, f):
+    legs_size, = c
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    return (
+    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (legs_size,),
+    )
+
+
+def _condition_rrrrs(c, k, x, s, f):
+    sqrt = f.sqrt
+    sin = f.sin
+    cos = f.cos
+    least = f.least
+    b_c_x, b_c_y, b_c_z = c
+    (
+    Kd_3_rrrrs_t, Kd_3_rrrrs_t_2, branch_1_rrrrs, branch_3_rrrrs, inv_rho2_3_rrrrs_t_4,
+        inv_size_rrrrs, inv_size_rrrrs_t_2, inv_size_rrrrs_t_3, inv_size_rrrrs_t_4,
+        rho2_3_rrrrs_t, rrrrs_base_frame_xx, rrrrs_base_frame_xy, rrrrs_base_frame_xz,
+        rrrrs_base_frame_yx, rrrrs_base_frame_yy, rrrrs_base_frame_yz, rrrrs_base_frame_zx,
+        rrrrs_base_frame_zy, rrrrs_base_frame_zz, rrrrs_base_point_x, rrrrs_base_point_y,
+        rrrrs_base_point_z, rrrrs_joint2_offset_x, rrrrs_joint3_offset_x, rrrrs_joint4_offset_x,
+        rrrrs_platform_joint_offset_x, rrrrs_platform_point_x, rrrrs_platform_point_y,
+        rrrrs_platform_point_z, size_rrrrs, size_rrrrs_t_3,
+    ) = k
+    y_2_extra_rrrrs, = x
+    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
+    # (rrrrs-K1) from the base point to the connection point
+    q_rrrrs_in_base_x = (
+    R_xx*rrrrs_platform_point_x + R_xy*rrrrs_platform_point_y + R_xz*rrrrs_platform_point_z
+    )
+    q_rrrrs_in_base_y = (
+    R_yx*rrrrs_platform_point_x + R_yy*rrrrs_platform_point_y + R_yz*rrrrs_platform_point_z
+    )
+    q_rrrrs_in_base_z = (
+    R_zx*rrrrs_platform_point_x + R_zy*rrrrs_platform_point_y + R_zz*rrrrs_platform_point_z
+    )
+    S_rrrrs_x = q_rrrrs_in_base_x + t_x - rrrrs_base_point_x
+    S_rrrrs_y = q_rrrrs_in_base_y + t_y - rrrrs_base_point_y
+    S_rrrrs_z = q_rrrrs_in_base_z + t_z - rrrrs_base_point_z
+    # (rrrrs-K4) component along the reference direction
+    px_1_rrrrs = (
+    S_rrrrs_x*rrrrs_base_frame_xy + S_rrrrs_y*rrrrs_base_frame_yy + S_rrrrs_z*rrrrs_base_frame_zy
+    )
+    # (rrrrs-K5) component across the reference direction
+    py_1_rrrrs = (
+    S_rrrrs_x*rrrrs_base_frame_xz + S_rrrrs_y*rrrrs_base_frame_yz + S_rrrrs_z*rrrrs_base_frame_zz
+    )
+    # (rrrrs-K7) squared amplitude
+    rho2_1_rrrrs = px_1_rrrrs*px_1_rrrrs + py_1_rrrrs*py_1_rrrrs
+    # (rrrrs-K9) root, with the sign of the branch
+    root_1_rrrrs = branch_1_rrrrs*sqrt(rho2_1_rrrrs)
+    # (rrrrs-K13) the vector from joint 1 to the connection point, resolved along link 1
+    xi_1_rrrrs_t = (
+    S_rrrrs_x*rrrrs_base_frame_xx + S_rrrrs_y*rrrrs_base_frame_yx + S_rrrrs_z*rrrrs_base_frame_zx
+    )
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
+    x_2_rrrrs_z = xi_1_rrrrs_t - rrrrs_joint2_offset_x
+    # (rrrrs-K2) cosine of the angle of joint 2 from its reference direction
+    c_2_rrrrs_t = sin(y_2_extra_rrrrs)
+    # (rrrrs-K3) sine of the angle of joint 2 from its reference direction
+    s_2_rrrrs = cos(y_2_extra_rrrrs)
+    # (rrrrs-K14) from the origin of joint 2 to the connection point
+    x_2_rrrrs_t = c_2_rrrrs_t*root_1_rrrrs
+    x_2_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*x_2_rrrrs_z
+    x_2_rrrrs_t_2 = root_1_rrrrs*s_2_rrrrs
+    x_2_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*x_2_rrrrs_z
+    # (rrrrs-K15) from the origin of joint 3 to the connection point
+    x_3_rrrrs_x = x_2_rrrrs_r1_x - rrrrs_joint3_offset_x
+    # (rrrrs-K16) projection on the centre's direction, from the distance fixed by the joints beyond joint 3
+    Kd_3_rrrrs_t_3 = x_2_rrrrs_r1_y*x_2_rrrrs_r1_y + x_3_rrrrs_x*x_3_rrrrs_x
+    Kd_3_rrrrs = Kd_3_rrrrs_t + 0.5*Kd_3_rrrrs_t_3 - Kd_3_rrrrs_t_2
+    # (rrrrs-K20) factor of the cosine in the equation of joint 3
+    Kc_3_rrrrs = rrrrs_joint4_offset_x*x_3_rrrrs_x
+    # (rrrrs-K21) factor of the sine in the equation of joint 3
+    Ks_3_rrrrs = rrrrs_joint4_offset_x*x_2_rrrrs_r1_y
+    # (rrrrs-K22) squared amplitude
+    rho2_3_rrrrs = Kc_3_rrrrs*Kc_3_rrrrs + Ks_3_rrrrs*Ks_3_rrrrs
+    # (rrrrs-K23) discriminant
+    disc_3_rrrrs = rho2_3_rrrrs - Kd_3_rrrrs*Kd_3_rrrrs
+    # (rrrrs-K24) root, with the sign of the branch
+    root_3_rrrrs = branch_3_rrrrs*sqrt(disc_3_rrrrs)
+    # (rrrrs-K30) from the origin of joint 4 to the connection point
+    x_4_rrrrs_x = Kd_3_rrrrs*inv_size_rrrrs_t_2*rrrrs_joint4_offset_x - rrrrs_joint4_offset_x
+    # (rrrrs-K32) cosine of the angle of joint 4 from its reference direction
+    c_4_rrrrs = inv_size_rrrrs_t_3*rrrrs_platform_joint_offset_x*x_4_rrrrs_x
+    # (rrrrs-K33) sine of the angle of joint 4 from its reference direction
+    s_4_rrrrs = (
+    inv_size_rrrrs_t_2*inv_size_rrrrs_t_3*root_3_rrrrs*rrrrs_joint4_offset_x*rrrrs_platform_joint_offset_x
+    )
+    # (rrrrs-V2) from joint 3 to the connection point, along the links
+    r_3_rrrrs_x = rrrrs_joint4_offset_x + c_4_rrrrs*rrrrs_platform_joint_offset_x
+    # (rrrrs-K25) cosine of the angle of joint 3 from its reference direction
+    inv_rho2_3_rrrrs = 1.0/rho2_3_rrrrs
+    c_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*Kd_3_rrrrs - Ks_3_rrrrs*root_3_rrrrs)
+    # (rrrrs-K26) sine of the angle of joint 3 from its reference direction
+    s_3_rrrrs = inv_rho2_3_rrrrs*(Kc_3_rrrrs*root_3_rrrrs + Kd_3_rrrrs*Ks_3_rrrrs)
+    # (rrrrs-V5) velocity of the connection point per rate of joint 1
+    e_1_rrrrs_r2_x = c_3_rrrrs*s_2_rrrrs - c_2_rrrrs_t*s_3_rrrrs
+    e_1_rrrrs_r2_y = -c_2_rrrrs_t*c_3_rrrrs - s_2_rrrrs*s_3_rrrrs
+    # (rrrrs-V4) from joint 1 to the connection point, along the links
+    r_1_rrrrs_r1_x = x_2_rrrrs_t + s_2_rrrrs*xi_1_rrrrs_t
+    r_1_rrrrs_r1_y = x_2_rrrrs_t_2 - c_2_rrrrs_t*xi_1_rrrrs_t
+    r_1_rrrrs_r2_x = c_3_rrrrs*r_1_rrrrs_r1_x + r_1_rrrrs_r1_y*s_3_rrrrs
+    r_1_rrrrs_r2_y = c_3_rrrrs*r_1_rrrrs_r1_y - r_1_rrrrs_r1_x*s_3_rrrrs
+    # (rrrrs-V5) velocity of the connection point per rate of joint 1
+    v_1_rrrrs_z = (
+    (c_4_rrrrs*e_1_rrrrs_r2_x - e_1_rrrrs_r2_y*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_y +
+        r_1_rrrrs_r2_x*s_4_rrrrs) - (c_4_rrrrs*e_1_rrrrs_r2_y +
+        e_1_rrrrs_r2_x*s_4_rrrrs)*(c_4_rrrrs*r_1_rrrrs_r2_x - r_1_rrrrs_r2_y*s_4_rrrrs)
+    )
+    # (rrrrs-V2) from joint 3 to the connection point, along the links
+    r_3_rrrrs_r0_y = r_3_rrrrs_x*s_4_rrrrs - c_4_rrrrs*rrrrs_platform_joint_offset_x*s_4_rrrrs
+    # (rrrrs-K10) cosine of the angle of joint 1 from its reference direction
+    inv_rho2_1_rrrrs = 1.0/rho2_1_rrrrs
+    c_1_rrrrs = inv_rho2_1_rrrrs*py_1_rrrrs*root_1_rrrrs
+    # (rrrrs-K11) sine of the angle of joint 1 from its reference direction
+    s_1_rrrrs = inv_rho2_1_rrrrs*px_1_rrrrs*root_1_rrrrs
+    # (rrrrs-V9) reciprocal vector 1
+    axis_z_rrrrs_axes4_in_base_x = rrrrs_base_frame_xz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_xy
+    axis_z_rrrrs_axes4_in_base_y = rrrrs_base_frame_yz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_yy
+    axis_z_rrrrs_axes4_in_base_z = rrrrs_base_frame_zz*s_1_rrrrs - c_1_rrrrs*rrrrs_base_frame_zy
+    axis_y_rrrrs_axes4_r1_x = c_3_rrrrs*s_4_rrrrs - c_4_rrrrs*s_3_rrrrs
+    axis_y_rrrrs_axes4_r1_y = c_3_rrrrs*c_4_rrrrs + s_3_rrrrs*s_4_rrrrs
+    axis_y_rrrrs_axes4_r2_x = (
+    -axis_y_rrrrs_axes4_r1_x*c_2_rrrrs_t - axis_y_rrrrs_axes4_r1_y*s_2_rrrrs
+    )
+    axis_y_rrrrs_axes4_r2_y = (
+    axis_y_rrrrs_axes4_r1_x*s_2_rrrrs - axis_y_rrrrs_axes4_r1_y*c_2_rrrrs_t
+    )
+    w_1_rrrrs_t = axis_y_rrrrs_axes4_r2_x*s_1_rrrrs
+    w_1_rrrrs_t_2 = axis_y_rrrrs_axes4_r2_x*c_1_rrrrs
+    axis_y_rrrrs_axes4_in_base_x = (
+    axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_xx - rrrrs_base_frame_xy*w_1_rrrrs_t -
+        rrrrs_base_frame_xz*w_1_rrrrs_t_2
+    )
+    axis_y_rrrrs_axes4_in_base_y = (
+    axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_yx - rrrrs_base_frame_yy*w_1_rrrrs_t -
+        rrrrs_base_frame_yz*w_1_rrrrs_t_2
+    )
+    axis_y_rrrrs_axes4_in_base_z = (
+    axis_y_rrrrs_axes4_r2_y*rrrrs_base_frame_zx - rrrrs_base_frame_zy*w_1_rrrrs_t -
+        rrrrs_base_frame_zz*w_1_rrrrs_t_2
+    )
+    inv_v_1_rrrrs_z = 1.0/v_1_rrrrs_z
+    # (rrrrs-V10) reciprocal vector 2
+    inv_r_3_rrrrs_r0_y = 1.0/r_3_rrrrs_r0_y
+    # (rrrrs-A14) coefficient of the acceleration in: acceleration of joint 1
+    d1_qdd_3_rrrrs = (
+    inv_r_3_rrrrs_r0_y*(c_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_y - s_3_rrrrs*x_2_rrrrs_r1_x) +
+        s_4_rrrrs*(c_3_rrrrs*x_2_rrrrs_r1_x + s_3_rrrrs*x_2_rrrrs_r1_y))
+    )
+    # (rrrrs-V9) reciprocal vector 1
+    w_1_rrrrs_t_3 = axis_z_rrrrs_axes4_in_base_x*inv_v_1_rrrrs_z
+    w_1_rrrrs_t_4 = axis_z_rrrrs_axes4_in_base_y*inv_v_1_rrrrs_z
+    w_1_rrrrs_t_5 = axis_z_rrrrs_axes4_in_base_z*inv_v_1_rrrrs_z
+    # (M9) moment of the column's unit force about the platform origin
+    H_a_1_rrrrs_x = q_rrrrs_in_base_y*w_1_rrrrs_t_5 - q_rrrrs_in_base_z*w_1_rrrrs_t_4
+    H_a_1_rrrrs_y = q_rrrrs_in_base_z*w_1_rrrrs_t_3 - q_rrrrs_in_base_x*w_1_rrrrs_t_5
+    H_a_1_rrrrs_z = q_rrrrs_in_base_x*w_1_rrrrs_t_4 - q_rrrrs_in_base_y*w_1_rrrrs_t_3
+    # (rrrrs-V10) reciprocal vector 2
+    w_3_rrrrs_t = (
+    inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_z -
+        axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_y)
+    )
+    w_3_rrrrs_t_2 = (
+    inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_z*axis_z_rrrrs_axes4_in_base_x -
+        axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_z)
+    )
+    w_3_rrrrs_t_3 = (
+    inv_r_3_rrrrs_r0_y*(axis_y_rrrrs_axes4_in_base_x*axis_z_rrrrs_axes4_in_base_y -
+        axis_y_rrrrs_axes4_in_base_y*axis_z_rrrrs_axes4_in_base_x)
+    )
+    # (M10) moment of the column's unit force about the platform origin
+    H_a_3_rrrrs_x = q_rrrrs_in_base_z*w_3_rrrrs_t_2 - q_rrrrs_in_base_y*w_3_rrrrs_t_3
+    H_a_3_rrrrs_y = q_rrrrs_in_base_x*w_3_rrrrs_t_3 - q_rrrrs_in_base_z*w_3_rrrrs_t
+    H_a_3_rrrrs_z = q_rrrrs_in_base_y*w_3_rrrrs_t - q_rrrrs_in_base_x*w_3_rrrrs_t_2
+    # (C2) rms distance of the platform points from their centroid
+    spread_t = b_c_x - rrrrs_platform_point_x
+    spread_t_2 = b_c_y - rrrrs_platform_point_y
+    spread_t_3 = b_c_z - rrrrs_platform_point_z
+    spread_t_4 = spread_t*spread_t + spread_t_2*spread_t_2 + spread_t_3*spread_t_3
+    # (rrrrs-K7) squared amplitude
+    pivot_size = abs(rho2_1_rrrrs)
+    # (rrrrs-K22) squared amplitude
+    pivot_size_2 = abs(rho2_3_rrrrs)
+    # (rrrrs-V9) reciprocal vector 1
+    pivot_size_3 = abs(v_1_rrrrs_z)
+    pivot_size_4 = abs(r_3_rrrrs_r0_y)
+    # (rrrrs-N83) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots = (
+    least(least(least(sqrt(inv_rho2_3_rrrrs_t_4*pivot_size_2), inv_size_rrrrs*pivot_size_3),
+        inv_size_rrrrs*pivot_size_4), sqrt(inv_size_rrrrs_t_4*pivot_size))
+    )
+    ok = (abs(rho2_1_rrrrs) > _TOLERANCE * _TOLERANCE * size_rrrrs_t_3) & (abs(rho2_3_rrrrs) > _TOLERANCE * _TOLERANCE * rho2_3_rrrrs_t) & (disc_3_rrrrs >= 0.0) & (abs(v_1_rrrrs_z) > _TOLERANCE * size_rrrrs) & (abs(-r_3_rrrrs_r0_y) > _TOLERANCE * size_rrrrs)
+    return (
+    ok, (spread_t_4,), (w_1_rrrrs_t_3, w_1_rrrrs_t_4, w_1_rrrrs_t_5, H_a_1_rrrrs_x, H_a_1_rrrrs_y,
+        H_a_1_rrrrs_z, 1.0, -w_3_rrrrs_t, -w_3_rrrrs_t_2, -w_3_rrrrs_t_3, H_a_3_rrrrs_x,
+        H_a_3_rrrrs_y, H_a_3_rrrrs_z, -d1_qdd_3_rrrrs, least_pivots, disc_3_rrrrs,),
+    )
+
+
+def _condition_rrrs(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y, b_c_z = c
+    (
+    Kd_2_rrrs_t, Kd_2_rrrs_t_2, branch_1_rrrs, branch_2_rrrs, inv_rho2_2_rrrs_t_4, inv_size_rrrs,
+        inv_size_rrrs_t, inv_size_rrrs_t_2, inv_size_rrrs_t_3, rho2_2_rrrs_t, rrrs_base_frame_xx,
+        rrrs_base_frame_xy, rrrs_base_frame_xz, rrrs_base_frame_yx, rrrs_base_frame_yy,
+        rrrs_base_frame_yz, rrrs_base_frame_zx, rrrs_base_frame_zy, rrrs_base_frame_zz,
+        rrrs_base_point_x, rrrs_base_point_y, rrrs_base_point_z, rrrs_joint2_offset_x,
+        rrrs_joint3_offset_x, rrrs_platform_joint_offset_x, rrrs_platform_point_x,
+        rrrs_platform_point_y, rrrs_platform_point_z, size_rrrs, size_rrrs_t_3,
+    ) = k
+    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
+    # (rrrs-K1) from the base point to the connection point
+    q_rrrs_in_base_x = (
+    R_xx*rrrs_platform_point_x + R_xy*rrrs_platform_point_y + R_xz*rrrs_platform_point_z
+    )
+    q_rrrs_in_base_y = (
+    R_yx*rrrs_platform_point_x + R_yy*rrrs_platform_point_y + R_yz*rrrs_platform_point_z
+    )
+    q_rrrs_in_base_z = (
+    R_zx*rrrs_platform_point_x + R_zy*rrrs_platform_point_y + R_zz*rrrs_platform_point_z
+    )
+    S_rrrs_x = q_rrrs_in_base_x + t_x - rrrs_base_point_x
+    S_rrrs_y = q_rrrs_in_base_y + t_y - rrrs_base_point_y
+    S_rrrs_z = q_rrrs_in_base_z + t_z - rrrs_base_point_z
+    # (rrrs-K2) component along the reference direction
+    px_1_rrrs = (
+    S_rrrs_x*rrrs_base_frame_xy + S_rrrs_y*rrrs_base_frame_yy + S_rrrs_z*rrrs_base_frame_zy
+    )
+    # (rrrs-K3) component across the reference direction
+    py_1_rrrs = (
+    S_rrrs_x*rrrs_base_frame_xz + S_rrrs_y*rrrs_base_frame_yz + S_rrrs_z*rrrs_base_frame_zz
+    )
+    # (rrrs-K5) squared amplitude
+    rho2_1_rrrs = px_1_rrrs*px_1_rrrs + py_1_rrrs*py_1_rrrs
+    # (rrrs-K7) root, with the sign of the branch
+    root_1_rrrs = branch_1_rrrs*sqrt(rho2_1_rrrs)
+    # (rrrs-K11) the vector from joint 1 to the connection point, resolved along link 1
+    xi_1_rrrs_t = (
+    S_rrrs_x*rrrs_base_frame_xx + S_rrrs_y*rrrs_base_frame_yx + S_rrrs_z*rrrs_base_frame_zx
+    )
+    # (rrrs-K12) from the origin of joint 2 to the connection point
+    x_2_rrrs_z = xi_1_rrrs_t - rrrs_joint2_offset_x
+    # (rrrs-K13) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    Kd_2_rrrs_t_3 = root_1_rrrs*root_1_rrrs + x_2_rrrs_z*x_2_rrrs_z
+    Kd_2_rrrs = Kd_2_rrrs_t + 0.5*Kd_2_rrrs_t_3 - Kd_2_rrrs_t_2
+    # (rrrs-K17) factor of the cosine in the equation of joint 2
+    Kc_2_rrrs = root_1_rrrs*rrrs_joint3_offset_x
+    # (rrrs-K18) factor of the sine in the equation of joint 2
+    Ks_2_rrrs = rrrs_joint3_offset_x*x_2_rrrs_z
+    # (rrrs-K19) squared amplitude
+    rho2_2_rrrs = Kc_2_rrrs*Kc_2_rrrs + Ks_2_rrrs*Ks_2_rrrs
+    # (rrrs-K20) discriminant
+    disc_2_rrrs = rho2_2_rrrs - Kd_2_rrrs*Kd_2_rrrs
+    # (rrrs-K21) root, with the sign of the branch
+    root_2_rrrs = branch_2_rrrs*sqrt(disc_2_rrrs)
+    # (rrrs-K27) from the origin of joint 3 to the connection point
+    x_3_rrrs_x = Kd_2_rrrs*inv_size_rrrs_t*rrrs_joint3_offset_x - rrrs_joint3_offset_x
+    # (rrrs-K29) cosine of the angle of joint 3 from its reference direction
+    c_3_rrrs = inv_size_rrrs_t_2*rrrs_platform_joint_offset_x*x_3_rrrs_x
+    # (rrrs-K30) sine of the angle of joint 3 from its reference direction
+    s_3_rrrs = (
+    inv_size_rrrs_t*inv_size_rrrs_t_2*root_2_rrrs*rrrs_joint3_offset_x*rrrs_platform_joint_offset_x
+    )
+    # (rrrs-V2) from joint 2 to the connection point, along the links
+    r_2_rrrs_x = rrrs_joint3_offset_x + c_3_rrrs*rrrs_platform_joint_offset_x
+    # (rrrs-K22) cosine of the angle of joint 2 from its reference direction
+    inv_rho2_2_rrrs = 1.0/rho2_2_rrrs
+    c_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*Kd_2_rrrs + Ks_2_rrrs*root_2_rrrs)
+    # (rrrs-K23) sine of the angle of joint 2 from its reference direction
+    s_2_rrrs = inv_rho2_2_rrrs*(Kc_2_rrrs*root_2_rrrs - Kd_2_rrrs*Ks_2_rrrs)
+    # (rrrs-V4) velocity of the connection point per rate of joint 1
+    e_1_rrrs_r2_x = c_2_rrrs*s_3_rrrs - c_3_rrrs*s_2_rrrs
+    e_1_rrrs_r2_y = -c_2_rrrs*c_3_rrrs - s_2_rrrs*s_3_rrrs
+    # (rrrs-V3) from joint 1 to the connection point, along the links
+    r_1_rrrs_r1_x = c_2_rrrs*root_1_rrrs - s_2_rrrs*xi_1_rrrs_t
+    r_1_rrrs_r1_y = -c_2_rrrs*xi_1_rrrs_t - root_1_rrrs*s_2_rrrs
+    # (rrrs-V4) velocity of the connection point per rate of joint 1
+    v_1_rrrs_z = (
+    e_1_rrrs_r2_x*(c_3_rrrs*r_1_rrrs_r1_y + r_1_rrrs_r1_x*s_3_rrrs) -
+        e_1_rrrs_r2_y*(c_3_rrrs*r_1_rrrs_r1_x - r_1_rrrs_r1_y*s_3_rrrs)
+    )
+    # (rrrs-V2) from joint 2 to the connection point, along the links
+    r_2_rrrs_r0_y = r_2_rrrs_x*s_3_rrrs - c_3_rrrs*rrrs_platform_joint_offset_x*s_3_rrrs
+    # (rrrs-K8) cosine of the angle of joint 1 from its reference direction
+    inv_rho2_1_rrrs = 1.0/rho2_1_rrrs
+    c_1_rrrs = inv_rho2_1_rrrs*py_1_rrrs*root_1_rrrs
+    # (rrrs-K9) sine of the angle of joint 1 from its reference direction
+    s_1_rrrs = inv_rho2_1_rrrs*px_1_rrrs*root_1_rrrs
+    # (rrrs-V7) reciprocal vector 1
+    axis_z_rrrs_axes3_in_base_x = rrrs_base_frame_xz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_xy
+    axis_z_rrrs_axes3_in_base_y = rrrs_base_frame_yz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_yy
+    axis_z_rrrs_axes3_in_base_z = rrrs_base_frame_zz*s_1_rrrs - c_1_rrrs*rrrs_base_frame_zy
+    w_1_rrrs_t = e_1_rrrs_r2_x*s_1_rrrs
+    w_1_rrrs_t_2 = c_1_rrrs*e_1_rrrs_r2_x
+    axis_y_rrrs_axes3_in_base_x = (
+    e_1_rrrs_r2_y*rrrs_base_frame_xx + rrrs_base_frame_xy*w_1_rrrs_t +
+        rrrs_base_frame_xz*w_1_rrrs_t_2
+    )
+    axis_y_rrrs_axes3_in_base_y = (
+    e_1_rrrs_r2_y*rrrs_base_frame_yx + rrrs_base_frame_yy*w_1_rrrs_t +
+        rrrs_base_frame_yz*w_1_rrrs_t_2
+    )
+    axis_y_rrrs_axes3_in_base_z = (
+    e_1_rrrs_r2_y*rrrs_base_frame_zx + rrrs_base_frame_zy*w_1_rrrs_t +
+        rrrs_base_frame_zz*w_1_rrrs_t_2
+    )
+    inv_v_1_rrrs_z = 1.0/v_1_rrrs_z
+    # (rrrs-V8) reciprocal vector 2
+    inv_r_2_rrrs_r0_y = 1.0/r_2_rrrs_r0_y
+    # (rrrs-V7) reciprocal vector 1
+    w_1_rrrs_t_3 = axis_z_rrrs_axes3_in_base_x*inv_v_1_rrrs_z
+    w_1_rrrs_t_4 = axis_z_rrrs_axes3_in_base_y*inv_v_1_rrrs_z
+    w_1_rrrs_t_5 = axis_z_rrrs_axes3_in_base_z*inv_v_1_rrrs_z
+    # (M11) moment of the column's unit force about the platform origin
+    H_a_1_rrrs_x = q_rrrs_in_base_y*w_1_rrrs_t_5 - q_rrrs_in_base_z*w_1_rrrs_t_4
+    H_a_1_rrrs_y = q_rrrs_in_base_z*w_1_rrrs_t_3 - q_rrrs_in_base_x*w_1_rrrs_t_5
+    H_a_1_rrrs_z = q_rrrs_in_base_x*w_1_rrrs_t_4 - q_rrrs_in_base_y*w_1_rrrs_t_3
+    # (rrrs-V8) reciprocal vector 2
+    w_2_rrrs_t = (
+    inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_z -
+        axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_y)
+    )
+    w_2_rrrs_t_2 = (
+    inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_z*axis_z_rrrs_axes3_in_base_x -
+        axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_z)
+    )
+    w_2_rrrs_t_3 = (
+    inv_r_2_rrrs_r0_y*(axis_y_rrrs_axes3_in_base_x*axis_z_rrrs_axes3_in_base_y -
+        axis_y_rrrs_axes3_in_base_y*axis_z_rrrs_axes3_in_base_x)
+    )
+    # (M12) moment of the column's unit force about the platform origin
+    H_a_2_rrrs_x = q_rrrs_in_base_z*w_2_rrrs_t_2 - q_rrrs_in_base_y*w_2_rrrs_t_3
+    H_a_2_rrrs_y = q_rrrs_in_base_x*w_2_rrrs_t_3 - q_rrrs_in_base_z*w_2_rrrs_t
+    H_a_2_rrrs_z = q_rrrs_in_base_y*w_2_rrrs_t - q_rrrs_in_base_x*w_2_rrrs_t_2
+    # (C2) rms distance of the platform points from their centroid
+    spread_t_5 = b_c_x - rrrs_platform_point_x
+    spread_t_6 = b_c_y - rrrs_platform_point_y
+    spread_t_7 = b_c_z - rrrs_platform_point_z
+    spread_t_8 = spread_t_5*spread_t_5 + spread_t_6*spread_t_6 + spread_t_7*spread_t_7
+    # (rrrs-K5) squared amplitude
+    pivot_size_5 = abs(rho2_1_rrrs)
+    # (rrrs-K19) squared amplitude
+    pivot_size_6 = abs(rho2_2_rrrs)
+    # (rrrs-V7) reciprocal vector 1
+    pivot_size_7 = abs(v_1_rrrs_z)
+    pivot_size_8 = abs(r_2_rrrs_r0_y)
+    # (rrrs-N52) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots_2 = (
+    least(least(least(sqrt(inv_rho2_2_rrrs_t_4*pivot_size_6), inv_size_rrrs*pivot_size_7),
+        inv_size_rrrs*pivot_size_8), sqrt(inv_size_rrrs_t_3*pivot_size_5))
+    )
+    ok = (abs(rho2_1_rrrs) > _TOLERANCE * _TOLERANCE * size_rrrs_t_3) & (abs(rho2_2_rrrs) > _TOLERANCE * _TOLERANCE * rho2_2_rrrs_t) & (disc_2_rrrs >= 0.0) & (abs(v_1_rrrs_z) > _TOLERANCE * size_rrrs) & (abs(-r_2_rrrs_r0_y) > _TOLERANCE * size_rrrs)
+    return (
+    ok, (spread_t_8,), (w_1_rrrs_t_3, w_1_rrrs_t_4, w_1_rrrs_t_5, H_a_1_rrrs_x, H_a_1_rrrs_y,
+        H_a_1_rrrs_z, -w_2_rrrs_t, -w_2_rrrs_t_2, -w_2_rrrs_t_3, H_a_2_rrrs_x, H_a_2_rrrs_y,
+        H_a_2_rrrs_z, least_pivots_2, disc_2_rrrs,),
+    )
+
+
+def _condition_after(c, s, t, f):
+    sqrt = f.sqrt
+    total_rrrrs, total_rrrs = t
+    # (C2) rms distance of the platform points from their centroid
+    spread = sqrt(0.3333333333333333*total_rrrrs + 0.3333333333333333*total_rrrs)
+    ok = True
+    return (ok, (spread,),)
+
+
 _DYNAMICS = _Plan(
     inputs=('X', 'V'),
 arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
     before=_Part(
         _dynamics_before,
-('J_star_t_24', 'J_star_t_26', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
+('J_star_t_32', 'J_star_t_34', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yy', 'J_star_yz',
         'J_star_zz', 'Z_p_t', 'Z_p_t_2', 'Z_p_t_3', 'gravity_x', 'gravity_y', 'gravity_z',
         'h_star_x', 'h_star_y', 'h_star_z'),
         None,
@@ -7988,14 +8543,14 @@ arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
             'd_c_rrrrs_yy', 'd_phi_4_rrrrs_t', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_rrrrs_y',
             'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_2_rrrrs_z', 'h_3_rrrrs_x',
             'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z',
-            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
+            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3',
             'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
             'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
             'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
             'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
             'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
             'rrrrs_link3_mass', 'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x',
-            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)), ('V', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -8042,13 +8597,13 @@ arrays=(('M', (7, 7)), ('Z', (7,)), ('H', (7, 7))),
             'd_Gamma_2_rrrs_y', 'd_c_rrrs_yy', 'd_phi_3_rrrs_t', 'g_r0_x_2', 'g_r0_y_2',
             'g_r0_z_2', 'h_1_rrrs_y', 'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z',
             'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x',
-            'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx',
+            'inv_size_rrrs_t', 'inv_size_rrrs_t_2', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx',
             'rrrs_base_frame_xy', 'rrrs_base_frame_xz', 'rrrs_base_frame_yx',
             'rrrs_base_frame_yy', 'rrrs_base_frame_yz', 'rrrs_base_frame_zx',
             'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y',
             'rrrs_base_point_z', 'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x',
             'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             27,
@@ -8086,7 +8641,7 @@ _M = _Plan(
 arrays=(('M', (7, 7)),),
     before=_Part(
         _M_before,
-('J_star_t_24', 'J_star_t_26', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
+('J_star_t_32', 'J_star_t_34', 'J_star_xx', 'J_star_xy', 'J_star_xz', 'J_star_yz', 'h_star_x',
         'h_star_y', 'h_star_z'),
         None,
         (),
@@ -8103,14 +8658,14 @@ arrays=(('M', (7, 7)),),
             'Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'd_G_rrrrs_t',
             'd_Gamma_3_rrrrs_t', 'd_Gamma_3_rrrrs_y', 'd_c_rrrrs_yy', 'd_phi_4_rrrrs_t',
             'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_4_rrrrs_x', 'h_4_rrrrs_y', 'h_4_rrrrs_z',
-            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
+            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3',
             'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
             'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
             'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
             'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
             'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)),),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,
@@ -8139,13 +8694,13 @@ arrays=(('M', (7, 7)),),
             'J_3_rrrs_zz', 'Jc_2_rrrs_zz', 'Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs',
             'branch_2_rrrs', 'd_Gamma_2_rrrs_t', 'd_Gamma_2_rrrs_y', 'd_c_rrrs_yy',
             'd_phi_3_rrrs_t', 'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t', 'inv_size_rrrs_t_2',
             'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
             'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
             'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
             'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
             'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             21,
@@ -8188,14 +8743,14 @@ arrays=(('Z', (7,)),),
             'g_r0_y', 'g_r0_z', 'h_1_rrrrs_y', 'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y',
             'h_2_rrrrs_z', 'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x',
             'h_4_rrrrs_y', 'h_4_rrrrs_z', 'inv_rrrrs_platform_joint_offset_x',
-            'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
+            'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
             'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx',
             'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx',
             'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz', 'rrrrs_base_point_x',
             'rrrrs_base_point_y', 'rrrrs_base_point_z', 'rrrrs_joint2_offset_x',
             'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x', 'rrrrs_link3_mass',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)), ('V', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             6,
@@ -8212,14 +8767,14 @@ arrays=(('Z', (7,)),),
             'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx', 'Sigma_3_rrrs_yy', 'Sigma_3_rrrs_zz',
             'branch_1_rrrs', 'branch_2_rrrs', 'g_r0_x_2', 'g_r0_y_2', 'g_r0_z_2', 'h_1_rrrs_y',
             'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z', 'h_3_rrrs_x', 'h_3_rrrs_y',
-            'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6',
-            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
+            'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t',
+            'inv_size_rrrs_t_2', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
             'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
             'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
             'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
             'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
             'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z',
-            'size_rrrs', 'size_rrrs_t_8'),
+            'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             6,
@@ -8250,14 +8805,14 @@ arrays=(('H', (7, 7)),),
             _H_rrrrs,
             "rrrrs",
 (),
-('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'inv_size_rrrrs_t_7',
-            'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy',
+('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'inv_size_rrrrs_t_2',
+            'inv_size_rrrrs_t_3', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy',
             'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy',
             'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy',
             'rrrrs_base_frame_zz', 'rrrrs_base_point_x', 'rrrrs_base_point_y',
             'rrrrs_base_point_z', 'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x',
             'rrrrs_joint4_offset_x', 'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x',
-            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)),),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -8282,14 +8837,14 @@ arrays=(('H', (7, 7)),),
             _H_rrrs,
             "rrrs",
 (),
-('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs', 'inv_size_rrrs_t_6',
-            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
+('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs', 'inv_size_rrrs_t',
+            'inv_size_rrrs_t_2', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
             'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
             'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
             'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
             'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
             'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z',
-            'size_rrrs', 'size_rrrs_t_8'),
+            'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -8333,14 +8888,14 @@ arrays=(('required', (7,)), ('H', (7, 7))),
             'g_r0_y', 'g_r0_z', 'h_1_rrrrs_y', 'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y',
             'h_2_rrrrs_z', 'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x',
             'h_4_rrrrs_y', 'h_4_rrrrs_z', 'inv_rrrrs_platform_joint_offset_x',
-            'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
+            'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
             'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx',
             'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx',
             'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz', 'rrrrs_base_point_x',
             'rrrrs_base_point_y', 'rrrrs_base_point_z', 'rrrrs_joint2_offset_x',
             'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x', 'rrrrs_link3_mass',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)), ('V', (6,)), ('A', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             6,
@@ -8371,14 +8926,14 @@ arrays=(('required', (7,)), ('H', (7, 7))),
             'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx', 'Sigma_3_rrrs_yy', 'Sigma_3_rrrs_zz',
             'branch_1_rrrs', 'branch_2_rrrs', 'g_r0_x_2', 'g_r0_y_2', 'g_r0_z_2', 'h_1_rrrs_y',
             'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z', 'h_3_rrrs_x', 'h_3_rrrs_y',
-            'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6',
-            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
+            'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t',
+            'inv_size_rrrs_t_2', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
             'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
             'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
             'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
             'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
             'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z',
-            'size_rrrs', 'size_rrrs_t_8'),
+            'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             6,
@@ -8421,14 +8976,14 @@ arrays=(('q', (10,)),),
             _inverse_kinematics_rrrrs,
             "rrrrs",
 (),
-('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'inv_size_rrrrs_t_7',
-            'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy',
+('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'inv_size_rrrrs_t_2',
+            'inv_size_rrrrs_t_3', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy',
             'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy',
             'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy',
             'rrrrs_base_frame_zz', 'rrrrs_base_point_x', 'rrrrs_base_point_y',
             'rrrrs_base_point_z', 'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x',
             'rrrrs_joint4_offset_x', 'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x',
-            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs_t_3'),
 (('X', (7,)),),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -8443,14 +8998,14 @@ arrays=(('q', (10,)),),
             _inverse_kinematics_rrrs,
             "rrrs",
 (),
-('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs', 'inv_size_rrrs_t_6',
-            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
+('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs', 'inv_size_rrrs_t',
+            'inv_size_rrrs_t_2', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
             'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
             'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
             'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
             'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x',
             'rrrs_platform_point_x', 'rrrs_platform_point_y', 'rrrs_platform_point_z',
-            'size_rrrs_t_8'),
+            'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             0,
@@ -8477,14 +9032,14 @@ arrays=(('qd', (10,)),),
             "rrrrs",
 (),
 ('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs',
-            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
+            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3',
             'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
             'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
             'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
             'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
             'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)), ('V', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -8500,13 +9055,13 @@ arrays=(('qd', (10,)),),
             "rrrs",
 (),
 ('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t', 'inv_size_rrrs_t_2',
             'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
             'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
             'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
             'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
             'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17),
             0,
@@ -8533,14 +9088,14 @@ arrays=(('qdd', (10,)),),
             "rrrrs",
 (),
 ('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs',
-            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8',
+            'inv_rrrrs_platform_joint_offset_x', 'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3',
             'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
             'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
             'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
             'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
             'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)), ('V', (6,)), ('A', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -8556,13 +9111,13 @@ arrays=(('qdd', (10,)),),
             "rrrs",
 (),
 ('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs',
-            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7',
+            'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t', 'inv_size_rrrs_t_2',
             'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
             'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
             'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
             'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
             'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
-            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -8596,14 +9151,14 @@ arrays=(('leg_force', (3, 3)), ('drive', (7, 3))),
             'g_r0_y', 'g_r0_z', 'h_1_rrrrs_y', 'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y',
             'h_2_rrrrs_z', 'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x',
             'h_4_rrrrs_y', 'h_4_rrrrs_z', 'inv_rrrrs_platform_joint_offset_x',
-            'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
+            'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx',
             'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx',
             'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx',
             'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz', 'rrrrs_base_point_x',
             'rrrrs_base_point_y', 'rrrrs_base_point_z', 'rrrrs_joint2_offset_x',
             'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x', 'rrrrs_link3_mass',
             'rrrrs_link4_mass', 'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x',
-            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_y', 'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
 (('X', (7,)), ('V', (6,)), ('A', (6,))),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -8628,14 +9183,14 @@ arrays=(('leg_force', (3, 3)), ('drive', (7, 3))),
             'Sigma_2_rrrs_zz', 'Sigma_3_rrrs_xx', 'Sigma_3_rrrs_yy', 'Sigma_3_rrrs_zz',
             'branch_1_rrrs', 'branch_2_rrrs', 'g_r0_x_2', 'g_r0_y_2', 'g_r0_z_2', 'h_1_rrrs_y',
             'h_1_rrrs_z', 'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z', 'h_3_rrrs_x', 'h_3_rrrs_y',
-            'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t_6',
-            'inv_size_rrrs_t_7', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
+            'h_3_rrrs_z', 'inv_rrrs_platform_joint_offset_x', 'inv_size_rrrs_t',
+            'inv_size_rrrs_t_2', 'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy',
             'rrrs_base_frame_xz', 'rrrs_base_frame_yx', 'rrrs_base_frame_yy',
             'rrrs_base_frame_yz', 'rrrs_base_frame_zx', 'rrrs_base_frame_zy',
             'rrrs_base_frame_zz', 'rrrs_base_point_x', 'rrrs_base_point_y', 'rrrs_base_point_z',
             'rrrs_joint2_offset_x', 'rrrs_joint3_offset_x', 'rrrs_link3_mass',
             'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_8'),
+            'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 23),
             0,
@@ -8671,7 +9226,7 @@ arrays=(('potential', (1,)),),
             'branch_1_rrrrs', 'branch_3_rrrrs', 'g_r0_x', 'g_r0_y', 'g_r0_z', 'h_1_rrrrs_x',
             'h_1_rrrrs_y', 'h_1_rrrrs_z', 'h_2_rrrrs_x', 'h_2_rrrrs_y', 'h_2_rrrrs_z',
             'h_3_rrrrs_x', 'h_3_rrrrs_y', 'h_3_rrrrs_z', 'h_4_rrrrs_x', 'h_4_rrrrs_y',
-            'h_4_rrrrs_z', 'inv_size_rrrrs_t_7', 'inv_size_rrrrs_t_8', 'potential_t_3',
+            'h_4_rrrrs_z', 'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3', 'potential_t_3',
             'potential_t_4', 'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy',
             'rrrrs_base_frame_xz', 'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy',
             'rrrrs_base_frame_yz', 'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy',
@@ -8679,7 +9234,7 @@ arrays=(('potential', (1,)),),
             'rrrrs_base_point_z', 'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x',
             'rrrrs_joint4_offset_x', 'rrrrs_link1_mass', 'rrrrs_link2_mass', 'rrrrs_link3_mass',
             'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
-            'rrrrs_platform_point_z', 'size_rrrrs_t_8'),
+            'rrrrs_platform_point_z', 'size_rrrrs_t_3'),
 (('X', (7,)),),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             1,
@@ -8693,14 +9248,14 @@ arrays=(('potential', (1,)),),
 ('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'b_rrrs_r0_x', 'b_rrrs_r0_y', 'branch_1_rrrs', 'branch_2_rrrs',
             'g_r0_x_2', 'g_r0_y_2', 'g_r0_z_2', 'h_1_rrrs_x', 'h_1_rrrs_y', 'h_1_rrrs_z',
             'h_2_rrrs_x', 'h_2_rrrs_y', 'h_2_rrrs_z', 'h_3_rrrs_x', 'h_3_rrrs_y', 'h_3_rrrs_z',
-            'inv_size_rrrs_t_6', 'inv_size_rrrs_t_7', 'potential_t', 'potential_t_2',
+            'inv_size_rrrs_t', 'inv_size_rrrs_t_2', 'potential_t', 'potential_t_2',
             'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
             'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
             'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
             'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
             'rrrs_joint3_offset_x', 'rrrs_link1_mass', 'rrrs_link2_mass',
             'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x', 'rrrs_platform_point_y',
-            'rrrs_platform_point_z', 'size_rrrs_t_8'),
+            'rrrs_platform_point_z', 'size_rrrs_t_3'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
             1,
@@ -8715,10 +9270,96 @@ arrays=(('potential', (1,)),),
         ((0, 0),),
     ),
 )
+_CONDITION = _Plan(
+    inputs=('X',),
+arrays=(('H', (7, 7)), ('lengths', (2,)), ('pivots', (3,)), ('reach', (3,))),
+    before=_Part(
+        _condition_before,
+('legs_size',),
+        None,
+        ((1, 1),),
+    ),
+    legs=(
+        _LegPart(
+            _condition_rrrrs,
+            "rrrrs",
+('b_c_x', 'b_c_y', 'b_c_z'),
+('Kd_3_rrrrs_t', 'Kd_3_rrrrs_t_2', 'branch_1_rrrrs', 'branch_3_rrrrs', 'inv_rho2_3_rrrrs_t_4',
+            'inv_size_rrrrs', 'inv_size_rrrrs_t_2', 'inv_size_rrrrs_t_3', 'inv_size_rrrrs_t_4',
+            'rho2_3_rrrrs_t', 'rrrrs_base_frame_xx', 'rrrrs_base_frame_xy', 'rrrrs_base_frame_xz',
+            'rrrrs_base_frame_yx', 'rrrrs_base_frame_yy', 'rrrrs_base_frame_yz',
+            'rrrrs_base_frame_zx', 'rrrrs_base_frame_zy', 'rrrrs_base_frame_zz',
+            'rrrrs_base_point_x', 'rrrrs_base_point_y', 'rrrrs_base_point_z',
+            'rrrrs_joint2_offset_x', 'rrrrs_joint3_offset_x', 'rrrrs_joint4_offset_x',
+            'rrrrs_platform_joint_offset_x', 'rrrrs_platform_point_x', 'rrrrs_platform_point_y',
+            'rrrrs_platform_point_z', 'size_rrrrs', 'size_rrrrs_t_3'),
+(('X', (7,)),),
+(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
+            1,
+            (
+(0, (0,)),
+(0, (7,)),
+(0, (14,)),
+(0, (21,)),
+(0, (28,)),
+(0, (35,)),
+(0, (43,)),
+(0, (2,)),
+(0, (9,)),
+(0, (16,)),
+(0, (23,)),
+(0, (30,)),
+(0, (37,)),
+(0, (44,)),
+(2, (0,)),
+(3, (0,)),
+            ),
+        ),
+        _LegPart(
+            _condition_rrrs,
+            "rrrs",
+('b_c_x', 'b_c_y', 'b_c_z'),
+('Kd_2_rrrs_t', 'Kd_2_rrrs_t_2', 'branch_1_rrrs', 'branch_2_rrrs', 'inv_rho2_2_rrrs_t_4',
+            'inv_size_rrrs', 'inv_size_rrrs_t', 'inv_size_rrrs_t_2', 'inv_size_rrrs_t_3',
+            'rho2_2_rrrs_t', 'rrrs_base_frame_xx', 'rrrs_base_frame_xy', 'rrrs_base_frame_xz',
+            'rrrs_base_frame_yx', 'rrrs_base_frame_yy', 'rrrs_base_frame_yz',
+            'rrrs_base_frame_zx', 'rrrs_base_frame_zy', 'rrrs_base_frame_zz', 'rrrs_base_point_x',
+            'rrrs_base_point_y', 'rrrs_base_point_z', 'rrrs_joint2_offset_x',
+            'rrrs_joint3_offset_x', 'rrrs_platform_joint_offset_x', 'rrrs_platform_point_x',
+            'rrrs_platform_point_y', 'rrrs_platform_point_z', 'size_rrrs', 'size_rrrs_t_3'),
+(),
+(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
+            1,
+            (
+(0, (3, 5)),
+(0, (10, 12)),
+(0, (17, 19)),
+(0, (24, 26)),
+(0, (31, 33)),
+(0, (38, 40)),
+(0, (4, 6)),
+(0, (11, 13)),
+(0, (18, 20)),
+(0, (25, 27)),
+(0, (32, 34)),
+(0, (39, 41)),
+(2, (1, 2)),
+(3, (1, 2)),
+            ),
+        ),
+    ),
+    after=_Part(
+        _condition_after,
+(),
+(),
+        ((1, 0),),
+    ),
+)
 _DEFAULT = Parameters()
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
 
 
 def _solve(a, b):
@@ -8749,7 +9390,8 @@ def _solve_one(a, b):
         a[i] = [v / size for v in row] + [b[i] / size]
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[best] = a[best], a[k]
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
         if not abs(a[k][k]) > _PIVOT:
             return failure
         head = a[k]
@@ -8770,7 +9412,9 @@ def _solve_block(a, b):
     a = np.concatenate((a, b[:, :, None]), axis=2) / size
     which = np.arange(states)
     for k in range(n):
-        best = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        column = np.abs(a[:, k:, k])
+        best = np.argmax(column, axis=1)
+        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
         a[which, k], a[which, best] = a[which, best], a[which, k].copy()
         good &= np.abs(a[:, k, k]) > _PIVOT
         factor = a[:, k + 1 :, k] / a[:, k, k, None]
@@ -8780,14 +9424,6 @@ def _solve_block(a, b):
         x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
     x[~good] = np.nan
     return x
-
-
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or ValueError."""
-    value = np.asarray(value, dtype=float)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
 
 
 def M(X, p=None):
@@ -8834,35 +9470,46 @@ def _known(array, axes, *inputs):
     return _together(failed, (array, axes))[0]
 
 
-def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
+def _weights(weights):
+    """The weights (..., NU) of the drives."""
+    if weights is None:
+        return np.ones(NU)
+    weights = _vector("inverse_dynamics", "weights", weights, NU)
+    if not np.all((weights > 0.0) & (weights < np.inf)):
+        raise ValueError("inverse_dynamics: weights must be positive and finite")
+    return weights
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
     The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
     """
     X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
     A = _vector("inverse_dynamics", "A", A, NV)
+    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
+    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
     required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - _external("inverse_dynamics", wrench)
+    force = required - external
     return _drive_forces(matrix, rest[0] if rest else None, force, weights)
 
 
-def forward_dynamics(X, V, tau, p=None, wrench=None):
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
     """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau = _vector("forward_dynamics", "tau", tau, NU)
+    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
+    _lead(X=X, V=V, tau=tau, wrench=external)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    external = _external("forward_dynamics", wrench)
     with np.errstate(all="ignore"):
         force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _solve(inertia, force)
 
 
-def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
-    """
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
     X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A = _vector("complete_acceleration", "A", A, NV)
-    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
+    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
     return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
@@ -8877,7 +9524,63 @@ def _drive_forces(matrix, directions, force, weights):
 def null_space(X, p=None):
     """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
     X = _vector("null_space", "X", X, NQ)
+    _given(p)
     return np.zeros((*X.shape[:-1], NU, 0))
+
+
+_MOMENT_ROWS = (3, 4, 5, 6)  # rows of H that are moments
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: sigma (..., 7), legs (..., 3), status (...).
+
+    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
+    rule the rms distance of the platform points from their centroid (where they coincide, the
+    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
+    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
+    converged, as in C; sigma and legs are NaN where it is not 0.
+    """
+    return _condition("condition", X, p, length)
+
+
+def _condition(name, X, p, length, columns=NU):
+    """sigma of the first columns of H, margins of the legs, status codes."""
+    X = _vector(name, "X", X, NQ)
+    p = _DEFAULT if p is None else p
+    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
+        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    lead = X.shape[:-1]
+    vectors = {"X": X.reshape(-1, NQ)}
+    states = len(vectors["X"])
+    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
+    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
+    with np.errstate(all="ignore"):
+        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
+        _run_block(_CONDITION, p, flat, made)
+        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
+        spread, legs_size = found["lengths"].T
+        if length is None:
+            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
+        matrix = found["H"]
+        matrix[:, list(_MOMENT_ROWS)] /= length
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
+        status = np.select(
+            [
+                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
+                ~(found["reach"] >= 0.0).all(axis=1),
+                ~(found["pivots"] > _TOLERANCE).all(axis=1),
+                ~finite,
+            ],
+            [3, 1, 2, 3],
+            0,
+        )
+    good = (status == 0)[:, None]
+    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
+    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
+    return (
+        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
+        status.reshape(lead)[()],
+    )
 
 
 def inverse_kinematics(X, p=None):
@@ -8898,15 +9601,16 @@ def joint_accelerations(X, V, A, p=None):
         _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
 
 
-def leg_reactions(X, V, A, p=None, wrench=None):
+def leg_reactions(X, V, A, p=None, *, wrench=None):
     """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
 
     The drives give the forces of `inverse_dynamics`.
     """
     X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
     A = _vector("leg_reactions", "A", A, NV)
+    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
     forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench)
+    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
     parts = [(tau, drive, _ACTUATOR_LEGS)]
     forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
     for amounts, vectors, legs in parts:
@@ -8918,6 +9622,7 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
+    _lead(X=X, V=V)
     inertia = M(X, p)
     with np.errstate(all="ignore"):
         kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
@@ -8932,8 +9637,8 @@ def forward_kinematics(q_actuated, X0, p=None):
     Extra coordinates that the drives do not determine stay.  NaN where no X is found.
     """
     q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0 = _vector("forward_kinematics", "X0", X0, NQ)
-    lead = np.broadcast_shapes(q_actuated.shape[:-1], X0.shape[:-1])
+    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
+    lead = _lead(q_actuated=q_actuated, X0=X0)
     target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
     X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
     found = [_find_pose(q, x, p) for q, x in zip(target, X)]
@@ -8974,31 +9679,74 @@ def _find_pose(q_actuated, X, p):
     return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
 
 
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
+
+
 _Q = 3  # where the quaternion begins in X
 
 
 def rotation(X):
-    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised."""
+    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised.
+
+    NaN where it is zero or its squared length overflows.
+    """
     X = _vector("rotation", "X", X, NQ)
     with np.errstate(all="ignore"):
-        q = X[..., _Q : _Q + 4]
-        length = np.linalg.norm(q, axis=-1, keepdims=True)
-        x, y, z, w = np.moveaxis(q / np.where(np.isfinite(length), length, np.nan), -1, 0)
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
+        x, y, z, w = np.moveaxis(_scaled(X[..., _Q : _Q + 4]), -1, 0)
+        xx, yy, zz, ww = x * x, y * y, z * z, w * w
+        n = xx + yy + zz + ww
+        rows = (
+            ((xx + ww - (yy + zz)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n),
+            (2 * (x * y + w * z) / n, (yy + ww - (xx + zz)) / n, 2 * (y * z - w * x) / n),
+            (2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (zz + ww - (xx + yy)) / n),
+        )
     return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
 
 
-def pose(t, R):
-    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero."""
-    R = np.asarray(R, dtype=float)
-    if R.shape[-2:] != (3, 3):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., 3, 3)")
+def _scaled(q):
+    """Quaternions (..., 4) with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=-1, keepdims=True)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=-1, keepdims=True)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions (..., 4) of length 1."""
+    q = _scaled(q)
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def pose(t, R, *, nearest=False):
+    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero.
+
+    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
+    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    """
+    R = _rotations(R, 3, nearest)
     with np.errstate(all="ignore"):
-        return _with_position(t, _quaternion(R))
+        return _with_position("pose", t, _quaternion(R))
 
 
 def _quaternion(R):
@@ -9016,13 +9764,13 @@ def _quaternion(R):
     ], axis=-2)
     best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
     q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return _unit(q)
 
 
-def _with_position(t, q):
-    """X of a position and a quaternion (or angle); extra coordinates zero."""
-    t = _vector("pose", "t", t, _Q)
-    lead = np.broadcast_shapes(t.shape[:-1], q.shape[:-1])
+def _with_position(function, t, q):
+    """X of a position and a quaternion; extra coordinates zero."""
+    t = _vector(function, "t", t, _Q)
+    lead = _lead(t=t, rotation=q)
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
     return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
 
@@ -9037,17 +9785,16 @@ def pose_from_rpy(t, rpy):
         sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
         cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
     ), axis=-1)
-    return _with_position(t, q)
+    return _with_position("pose_from_rpy", t, q)
 
 
 def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV)."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    q, w = X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
+    lead, q, w = _lead(X=X, V=V), X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
     with np.errstate(all="ignore"):
         vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
         scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
-    lead = np.broadcast_shapes(X.shape[:-1], V.shape[:-1])
     parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
     rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
     return _known(rate, 1, X)
@@ -9058,7 +9805,7 @@ def _moved(X, step):
     w = step[_Q : _Q + 3]
     angle = np.linalg.norm(w)
     turn = np.append(w * (0.5 * np.sinc(angle / (2 * np.pi))), np.cos(0.5 * angle))
-    a, q = turn, X[_Q : _Q + 4] / np.linalg.norm(X[_Q : _Q + 4])
+    a, q = turn, _unit(X[_Q : _Q + 4])
     vector = a[3] * q[:3] + q[3] * a[:3] + np.cross(a[:3], q[:3])
     scalar = a[3] * q[3] - a[:3] @ q[:3]
     return np.concatenate((X[:_Q] + step[:_Q], vector, [scalar], X[_Q + 4 :] + step[_Q + 3 :]))

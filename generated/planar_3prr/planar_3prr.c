@@ -3,6 +3,12 @@
 
 #include "planar_3prr.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(PLANAR_3PRR_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define PLANAR_3PRR_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef planar_3prr_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -229,7 +267,17 @@ INLINE int all_about_z(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 9) {
-        ok &= magnitude(x[8] - 1) <= R(1e-6);
+        ok &= magnitude(x[8] - 1) <= SNAPPED;
+    }
+    return ok;
+}
+
+/* izz alone counts in the plane. */
+INLINE int all_planar_inertias(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= x[9*i + 8] >= 0;
     }
     return ok;
 }
@@ -299,36 +347,36 @@ const planar_3prr_real planar_3prr_HOME_Q[PLANAR_3PRR_NJ] = {R(0.15), R(-0.7), R
 static int acceptable(const planar_3prr_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
+    ok &= all_within(&p->gravity[0], 3);
     ok &= all_zero(&p->gravity[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->prr_base_point[0][0], 9);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->prr_base_point[0][0], 9);
     ok &= all_zero(&p->prr_base_point[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->prr_base_frame[0][0][0], 27);
+    ok &= all_within(&p->prr_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->prr_base_frame[0][0][0], 3);
     ok &= all_about_z(&p->prr_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->prr_platform_point[0][0], 9);
+    ok &= all_within(&p->prr_platform_point[0][0], 9);
     ok &= all_zero(&p->prr_platform_point[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->prr_platform_joint_offset[0][0], 9);
+    ok &= all_within(&p->prr_platform_joint_offset[0][0], 9);
     ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 1, 3, 3);
     ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->prr_link1_mass[0], 3);
+    ok &= all_within(&p->prr_link1_mass[0], 3);
     ok &= none_negative(&p->prr_link1_mass[0], 3);
-    ok &= all_finite(&p->prr_link1_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->prr_link1_centre_of_mass[0][0], 9);
     ok &= all_zero(&p->prr_link1_centre_of_mass[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->prr_link1_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->prr_link1_inertia[0][0][0], 3);
-    ok &= all_finite(&p->prr_link2_mass[0], 3);
+    ok &= all_within(&p->prr_link1_inertia[0][0][0], 27);
+    ok &= all_planar_inertias(&p->prr_link1_inertia[0][0][0], 3);
+    ok &= all_within(&p->prr_link2_mass[0], 3);
     ok &= none_negative(&p->prr_link2_mass[0], 3);
-    ok &= all_finite(&p->prr_link2_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->prr_link2_centre_of_mass[0][0], 9);
     ok &= all_zero(&p->prr_link2_centre_of_mass[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->prr_link2_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->prr_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->prr_link2_inertia[0][0][0], 27);
+    ok &= all_planar_inertias(&p->prr_link2_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -343,6 +391,9 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     real total_prr_y = 0;
     real total_prr_xx = 0;
     real total_prr_zz = 0;
+    real total_prr_x_2 = 0;
+    real total_prr_y_2 = 0;
+    real total_prr_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -357,8 +408,11 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     const real J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x;
     const real J_star_t_3 = J_star_t*platform_mass;
     const real J_star_t_4 = J_star_t_2*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real prr_base_point_x = params->prr_base_point[leg][0];
         const real prr_base_point_y = params->prr_base_point[leg][1];
@@ -382,32 +436,31 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         const real uu_2_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
         /* (prr-K7) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_t = 1/uu_2_t;
-        /* (prr-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = prr_base_point_x*prr_base_point_x +
-            prr_base_point_y*prr_base_point_y;
-        const real size_t_2 = prr_platform_point_y*prr_platform_point_y;
-        const real size_t_3 = prr_platform_point_x*prr_platform_point_x + size_t_2;
-        const real size_ = root(size_t_ + size_t_3 + uu_2_t);
-        /* (prr-G3) connection point to the centre of mass of link 2 */
+        /* (prr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_t_ = R(2.5e-07) + uu_2_t;
+        const real size_ = root(size_t_);
+        /* (prr-G4) connection point to the centre of mass of link 2 */
         const real rho_tip_2_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x;
-        /* (prr-G5) inertia tensor of link 2 about the connection point */
+        /* (prr-G6) inertia tensor of link 2 about the connection point */
         const real J_2_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
             rho_tip_2_x*rho_tip_2_x;
         const real J_2_zz = prr_link2_inertia_zz + J_2_t*prr_link2_mass;
-        /* (prr-G4) first moment of link 2 about the connection point */
+        /* (prr-G5) first moment of link 2 about the connection point */
         const real h_2_x = prr_link2_mass*rho_tip_2_x;
         const real h_2_y = prr_link2_centre_of_mass_y*prr_link2_mass;
         /* (L2) first moment about the platform origin */
         const real h_star_t_3 = prr_link2_mass*prr_platform_point_x;
         const real h_star_t_4 = prr_link2_mass*prr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_5 = prr_link2_mass*size_t_2;
-        const real J_star_t_6 = prr_link2_mass*size_t_3;
+        const real J_star_t_5 = prr_platform_point_y*prr_platform_point_y;
+        const real J_star_t_6 = J_star_t_5 + prr_platform_point_x*prr_platform_point_x;
+        const real J_star_t_7 = J_star_t_5*prr_link2_mass;
+        const real J_star_t_8 = J_star_t_6*prr_link2_mass;
         /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
         const real g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
-        /* (prr-G2) first moment of link 1 about the origin of link 1 */
+        /* (prr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_x = prr_link1_centre_of_mass_x*prr_link1_mass;
         const real h_1_y = prr_link1_centre_of_mass_y*prr_link1_mass;
         /* (V1) potential energy */
@@ -415,6 +468,8 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
             prr_base_frame_yx*prr_base_point_y;
         const real potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
             prr_base_frame_yy*prr_base_point_y);
+        /* (prr-V3) reciprocal vector 1 */
+        const real inv_size = 1/size_;
         model->J_2_zz[leg] = J_2_zz;
         model->b_r0_x[leg] = b_r0_x;
         model->branch_1[leg] = branch_1;
@@ -424,6 +479,7 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         model->h_1_y[leg] = h_1_y;
         model->h_2_x[leg] = h_2_x;
         model->h_2_y[leg] = h_2_y;
+        model->inv_size[leg] = inv_size;
         model->inv_uu_2_t[leg] = inv_uu_2_t;
         model->potential_t[leg] = potential_t;
         model->prr_base_frame_xx[leg] = prr_base_frame_xx;
@@ -442,8 +498,11 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
         total_prr += prr_link2_mass;
         total_prr_x += h_star_t_3;
         total_prr_y += h_star_t_4;
-        total_prr_xx += J_star_t_5;
-        total_prr_zz += J_star_t_6;
+        total_prr_xx += J_star_t_7;
+        total_prr_zz += J_star_t_8;
+        total_prr_x_2 += prr_platform_point_x;
+        total_prr_y_2 += prr_platform_point_y;
+        total_prr_2 += size_t_;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_prr;
@@ -453,17 +512,25 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
     /* (L3) inertia tensor about the platform origin */
     const real J_star_xx = J_star_t_3 + total_prr_xx;
     const real J_star_zz = J_star_t_4 + platform_inertia_zz + total_prr_zz;
-    const real J_star_t_7 = J_star_xx - J_star_zz;
-    const real J_star_t_8 = J_star_t_7 - J_star_xx;
+    const real J_star_t_9 = J_star_xx - J_star_zz;
+    const real J_star_t_10 = J_star_t_9 - J_star_xx;
     /* (M4) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
-    model->J_star_t_8 = J_star_t_8;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_prr_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_prr_y_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = spread_t*root(total_prr_2);
+    model->J_star_t_10 = J_star_t_10;
     model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return PLANAR_3PRR_OK;
 }
@@ -473,6 +540,9 @@ int planar_3prr_prepare(const planar_3prr_params *params, planar_3prr_model *mod
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -482,23 +552,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -506,6 +573,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -534,47 +602,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -595,7 +666,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -672,9 +743,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -709,8 +782,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -1034,7 +1107,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real total_prr_x = s->sum[6][k];
         const real total_prr_y = s->sum[7][k];
         const real total_prr_z = s->sum[8][k];
-        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_t_10 = m->J_star_t_10;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
         const real M_tt_xx = m_star + total_prr_xx;
@@ -1043,7 +1116,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real M_ta_xz = -h_star_in_base_y - total_prr_xz;
         const real M_ta_yz = h_star_in_base_x - total_prr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prr_zz - J_star_t_8;
+        const real M_aa_zz = total_prr_zz - J_star_t_10;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_prr_x;
         const real Z_t_y = Z_p_y + total_prr_y;
@@ -1259,7 +1332,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_prr_xz = s->sum[3][k];
         const real total_prr_yz = s->sum[4][k];
         const real total_prr_zz = s->sum[5][k];
-        const real J_star_t_8 = m->J_star_t_8;
+        const real J_star_t_10 = m->J_star_t_10;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
         const real M_tt_xx = m_star + total_prr_xx;
@@ -1268,7 +1341,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real M_ta_xz = -h_star_in_base_y - total_prr_xz;
         const real M_ta_yz = h_star_in_base_x - total_prr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prr_zz - J_star_t_8;
+        const real M_aa_zz = total_prr_zz - J_star_t_10;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = total_prr_xy;
         M[3*w + k] = total_prr_xy;
@@ -2707,6 +2780,165 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_after(w, s, potential);
 }
 
+/* ---- condition: 100 mul, 66 add, 3 div, 4 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[5][8], unreachable[8], singular[8];
+} condition_results_prr;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        lengths[1*w + k] = legs_size;
+    }
+}
+
+INLINE void condition_legs_prr(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_prr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real branch_1 = m->branch_1[i];
+        const real inv_size = m->inv_size[i];
+        const real inv_uu_2_t = m->inv_uu_2_t[i];
+        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
+        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
+        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
+        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
+        const real prr_base_point_x = m->prr_base_point_x[i];
+        const real prr_base_point_y = m->prr_base_point_y[i];
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_platform_point_x = m->prr_platform_point_x[i];
+        const real prr_platform_point_y = m->prr_platform_point_y[i];
+        const real size_ = m->size_[i];
+        const real uu_2_t = m->uu_2_t[i];
+        /* (prr-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real q_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real S_x = q_in_base_x + t_x - prr_base_point_x;
+        const real S_y = q_in_base_y + t_y - prr_base_point_y;
+        /* (prr-K2) component along axis 1 */
+        const real px_1 = S_x*prr_base_frame_xx + S_y*prr_base_frame_yx;
+        /* (prr-K3) discriminant of the distance equation */
+        const real disc_1_t = S_x*S_x + S_y*S_y;
+        const real disc_1 = px_1*px_1 + uu_2_t - disc_1_t;
+        /* (prr-K7) cosine of the angle of joint 2 from its reference direction */
+        const real c_2 = branch_1*root(disc_1)*inv_uu_2_t*prr_platform_joint_offset_x;
+        /* (prr-K8) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_uu_2_t*prr_platform_joint_offset_x*(S_x*prr_base_frame_xy +
+            S_y*prr_base_frame_yy);
+        /* (prr-V3) reciprocal vector 1 */
+        const real axis_y_prr_axes2_in_base_x = -c_2*prr_base_frame_xy - prr_base_frame_xx*s_2;
+        const real axis_y_prr_axes2_in_base_y = -c_2*prr_base_frame_yy - prr_base_frame_yx*s_2;
+        /* (prr-V2) velocity of the connection point per rate of joint 2 */
+        const real v_2_t = c_2*prr_platform_joint_offset_x;
+        /* (prr-V3) reciprocal vector 1 */
+        const real w_1_t = prr_platform_joint_offset_x*s_2/v_2_t;
+        const real _r0_x = -c_2 - s_2*w_1_t;
+        const real _r0_y = c_2*w_1_t - s_2;
+        const real w_1_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - prr_platform_point_x;
+        const real spread_t_3 = b_c_y - prr_platform_point_y;
+        const real spread_t_4 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3;
+        /* (prr-V3) reciprocal vector 1 */
+        const real pivot_size = magnitude(v_2_t);
+        const real pivot_ = inv_size*pivot_size;
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_4 : spread_t_4;  /* total_prr */
+        o->entry[0][k] = w_1_in_base_x;
+        o->entry[1][k] = w_1_in_base_y;
+        o->entry[2][k] = H_a_1_z;
+        o->entry[3][k] = pivot_;
+        o->entry[4][k] = disc_1;
+        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        o->singular[k] = UNLESS(magnitude(-v_2_t) > TOLERANCE*size_);
+    }
+}
+
+INLINE void condition_place_prr(size_t w, const condition_results_prr *o, size_t leg, size_t
+    first, real *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        pivots[(leg)*w + k] = o->entry[3][first + k];
+        reach[(leg)*w + k] = o->entry[4][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_prr = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_prr);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_prr results_prr;
+    condition_before(m, w, X, s, lengths);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_prr(m, 0, 1, s, 0, 3, 0, &results_prr);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_prr(w, &results_prr, leg, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prr.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_prr.sum, 0, sizeof results_prr.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_prr(m, leg, 0, s, 1, w, 1, &results_prr);
+            condition_place_prr(w, &results_prr, leg, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prr.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -2784,12 +3016,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int planar_3prr_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 3) ? PLANAR_3PRR_OK : PLANAR_3PRR_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 3, 1, &code, completed);
     return code;
 }
@@ -2840,12 +3073,16 @@ int planar_3prr_energy(const prepared *m, const real *X, const real *V, real *ki
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 2, 4};
     real q[6];
     int code = planar_3prr_inverse_kinematics(m, X, q);
+    if (code != PLANAR_3PRR_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -2858,8 +3095,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[9];
     int code = planar_3prr_H(m, X, H);
-    fill_rows(3, H, gap, a);
     if (code == PLANAR_3PRR_OK) {
+        fill_rows(3, H, gap, a);
         least_squares(3, 3, a, step);
     }
     return code;
@@ -2868,7 +3105,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 3 };
-    real found[3], gap[GAPS], trial[3], next[GAPS], step[3];
+    real found[3], gap[GAPS] = {0}, trial[3] = {0}, next[GAPS] = {0}, step[3] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : PLANAR_3PRR_INVALID;
@@ -2897,6 +3134,104 @@ int planar_3prr_forward_kinematics(const prepared *m, const real *q_actuated, co
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    static const size_t moments[] = {2};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(3, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 1; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            H[moments[i]*3 + j] /= length;
+        }
+    }
+    check(9, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int planar_3prr_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[9], a[9], found[3], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != PLANAR_3PRR_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(3, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int planar_3prr_rotation(const real *X, real *R)
 {
     const int code = all_finite(X, 3) ? PLANAR_3PRR_OK : PLANAR_3PRR_INVALID;
@@ -2911,7 +3246,9 @@ int planar_3prr_pose(const real *t, const real *R, real *X)
     found[0] = t[0];
     found[1] = t[1];
     found[2] = angle(R[2], R[0]);
-    const int code = all_finite(R, 4) && all_finite(found, 3) ? PLANAR_3PRR_OK : PLANAR_3PRR_INVALID;
+    const int turns = magnitude(R[0]*R[0] + R[1]*R[1] - 1) <= ROUNDED && magnitude(R[2]*R[2] + R[3]*R[3] - 1) <= ROUNDED
+        && magnitude(R[0]*R[2] + R[1]*R[3]) <= ROUNDED && R[0]*R[3] - R[1]*R[2] > 0;
+    const int code = turns && all_finite(found, 3) ? PLANAR_3PRR_OK : PLANAR_3PRR_INVALID;
     deliver(found, 3, 1, &code, X);
     return code;
 }
@@ -2939,6 +3276,11 @@ size_t planar_3prr_M_batch(const planar_3prr_model *model, size_t n, const plana
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_M(model, X + 3*(i + k), M + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -2963,6 +3305,11 @@ size_t planar_3prr_Z_batch(const planar_3prr_model *model, size_t n, const plana
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -2986,6 +3333,11 @@ size_t planar_3prr_H_batch(const planar_3prr_model *model, size_t n, const plana
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_H(model, X + 3*(i + k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3011,6 +3363,12 @@ size_t planar_3prr_dynamics_batch(const planar_3prr_model *model, size_t n, cons
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k),
+                    H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3035,6 +3393,11 @@ size_t planar_3prr_inverse_kinematics_batch(const planar_3prr_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 3*i, q + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_inverse_kinematics(model, X + 3*(i + k), q + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3059,6 +3422,11 @@ size_t planar_3prr_joint_rates_batch(const planar_3prr_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3084,6 +3452,12 @@ size_t planar_3prr_joint_accelerations_batch(const planar_3prr_model *model, siz
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    accelerations + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3112,6 +3486,12 @@ size_t planar_3prr_inverse_dynamics_batch(const planar_3prr_model *model, size_t
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench
+                    ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3140,6 +3520,12 @@ size_t planar_3prr_forward_dynamics_batch(const planar_3prr_model *model, size_t
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_3PRR_OK) {
+                codes[k] = planar_3prr_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3151,13 +3537,13 @@ size_t planar_3prr_forward_dynamics_batch(const planar_3prr_model *model, size_t
 }
 
 size_t planar_3prr_complete_acceleration_batch(const planar_3prr_model *model, size_t n, const
-    planar_3prr_real *X, const planar_3prr_real *V, const planar_3prr_real *A, planar_3prr_real
-    *completed, int *status)
+    planar_3prr_real *X, const planar_3prr_real *V, const planar_3prr_real *A, const
+    planar_3prr_real *wrench, planar_3prr_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = planar_3prr_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, completed +
-            3*i);
+        const int code = planar_3prr_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ?
+            wrench + 3*i : NULL, completed + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -3194,6 +3580,17 @@ size_t planar_3prr_forward_kinematics_batch(const planar_3prr_model *model, size
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = planar_3prr_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t planar_3prr_condition_batch(const planar_3prr_model *model, size_t n, const
+    planar_3prr_real *X, planar_3prr_real *sigma, planar_3prr_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_3prr_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

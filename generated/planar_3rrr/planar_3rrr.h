@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask planar_3rrr_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so planar_3rrr.c refuses them unless PLANAR_3RRR_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as PLANAR_3RRR_OK.
  */
 #ifndef PLANAR_3RRR_H_INCLUDED
 #define PLANAR_3RRR_H_INCLUDED
@@ -87,26 +93,28 @@ typedef struct {
 
 /* What depends on the parameters alone; set by planar_3rrr_prepare, then only read. */
 typedef struct {
-    planar_3rrr_real J_star_t_8, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,
-            m_star;
+    planar_3rrr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, legs_size, m_star, spread_t;
     /* legs of type rrr */
     planar_3rrr_real J_1_zz[3], J_2_zz[3], Jc_1_zz[3], Kd_1_t_2[3], Kd_1_t_3[3], b_r0_x[3], b_r0_y[3],
             branch_1[3], d_Gamma_1_t[3], d_Gamma_1_y[3], d_c_yy[3], d_phi_2_t[3], g_r0_x[3],
-            g_r0_y[3], h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], inv_Kd_1_t_5[3],
-            inv_rrr_platform_joint_offset_x[3], inv_uu_2_t[3], rho2_1_t[3], rrr_base_frame_xx[3],
-            rrr_base_frame_xy[3], rrr_base_frame_yx[3], rrr_base_frame_yy[3], rrr_base_point_x[3],
-            rrr_base_point_y[3], rrr_joint2_offset_x[3], rrr_link1_mass[3], rrr_link2_mass[3],
-            rrr_platform_joint_offset_x[3], rrr_platform_point_x[3], rrr_platform_point_y[3],
-            size_[3];
+            g_r0_y[3], h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], inv_Kd_1_t_5[3], inv_rho2_1_t_4[3],
+            inv_rrr_platform_joint_offset_x[3], inv_size[3], inv_uu_2_t[3], rho2_1_t[3],
+            rrr_base_frame_xx[3], rrr_base_frame_xy[3], rrr_base_frame_yx[3], rrr_base_frame_yy[3],
+            rrr_base_point_x[3], rrr_base_point_y[3], rrr_joint2_offset_x[3], rrr_link1_mass[3],
+            rrr_link2_mass[3], rrr_platform_joint_offset_x[3], rrr_platform_point_x[3],
+            rrr_platform_point_y[3], size_[3];
 } planar_3rrr_model;
 
 extern const planar_3rrr_params planar_3rrr_default_params;
 extern const planar_3rrr_real planar_3rrr_HOME_X[PLANAR_3RRR_NQ];
 extern const planar_3rrr_real planar_3rrr_HOME_Q[PLANAR_3RRR_NJ];
 
-/* Prepare a model.  PLANAR_3RRR_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  PLANAR_3RRR_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_3rrr_prepare(const planar_3rrr_params *params, planar_3rrr_model *model);
 
 /* Inertia matrix M. 220 mul, 148 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -177,13 +185,14 @@ size_t planar_3rrr_forward_dynamics_batch(const planar_3rrr_model *model, size_t
     planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *tau, const
     planar_3rrr_real *wrench, planar_3rrr_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int planar_3rrr_complete_acceleration(const planar_3rrr_model *model, const planar_3rrr_real *X,
-    const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real *completed);
+    const planar_3rrr_real *V, const planar_3rrr_real *A, const planar_3rrr_real *wrench,
+    planar_3rrr_real *completed);
 size_t planar_3rrr_complete_acceleration_batch(const planar_3rrr_model *model, size_t n, const
-    planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, planar_3rrr_real
-    *completed, int *status);
+    planar_3rrr_real *X, const planar_3rrr_real *V, const planar_3rrr_real *A, const
+    planar_3rrr_real *wrench, planar_3rrr_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 303 mul, 180 add, 6 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -210,12 +219,22 @@ int planar_3rrr_forward_kinematics(const planar_3rrr_model *model, const planar_
 size_t planar_3rrr_forward_kinematics_batch(const planar_3rrr_model *model, size_t n, const
     planar_3rrr_real *q_actuated, const planar_3rrr_real *X0, planar_3rrr_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 154 mul, 84 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (3). */
+int planar_3rrr_condition(const planar_3rrr_model *model, const planar_3rrr_real *X,
+    planar_3rrr_real *sigma, planar_3rrr_real *legs);
+size_t planar_3rrr_condition_batch(const planar_3rrr_model *model, size_t n, const
+    planar_3rrr_real *X, planar_3rrr_real *sigma, planar_3rrr_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_3rrr_rotation(const planar_3rrr_real *X, planar_3rrr_real *R);
 size_t planar_3rrr_rotation_batch(size_t n, const planar_3rrr_real *X, planar_3rrr_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
 int planar_3rrr_pose(const planar_3rrr_real *t, const planar_3rrr_real *R, planar_3rrr_real *X);
 size_t planar_3rrr_pose_batch(size_t n, const planar_3rrr_real *t, const planar_3rrr_real *R,
     planar_3rrr_real *X, int *status);

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask planar_4rpr_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so planar_4rpr.c refuses them unless PLANAR_4RPR_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as PLANAR_4RPR_OK.
  */
 #ifndef PLANAR_4RPR_H_INCLUDED
 #define PLANAR_4RPR_H_INCLUDED
@@ -83,23 +89,24 @@ typedef struct {
 
 /* What depends on the parameters alone; set by planar_4rpr_prepare, then only read. */
 typedef struct {
-    planar_4rpr_real J_star_t_8, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,
-            m_star;
+    planar_4rpr_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, m_star;
     /* legs of type rpr */
     planar_4rpr_real J_group_1_zz[4], b_r0_x[4], b_r0_y[4], branch_1[4], g_r0_x[4], g_r0_y[4],
             h_1_x[4], h_1_y[4], h_2_x[4], h_2_y[4], rpr_base_frame_xx[4], rpr_base_frame_xy[4],
             rpr_base_frame_yx[4], rpr_base_frame_yy[4], rpr_base_point_x[4], rpr_base_point_y[4],
-            rpr_link1_mass[4], rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4],
-            size_[4], size_t_4[4];
+            rpr_link1_mass[4], rpr_link2_mass[4], rpr_platform_point_x[4], rpr_platform_point_y[4];
 } planar_4rpr_model;
 
 extern const planar_4rpr_params planar_4rpr_default_params;
 extern const planar_4rpr_real planar_4rpr_HOME_X[PLANAR_4RPR_NQ];
 extern const planar_4rpr_real planar_4rpr_HOME_Q[PLANAR_4RPR_NJ];
 
-/* Prepare a model.  PLANAR_4RPR_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  PLANAR_4RPR_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_4rpr_prepare(const planar_4rpr_params *params, planar_4rpr_model *model);
 
 /* Inertia matrix M. 140 mul, 99 add, 4 div, 4 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -186,13 +193,14 @@ int planar_4rpr_null_space(const planar_4rpr_model *model, const planar_4rpr_rea
 size_t planar_4rpr_null_space_batch(const planar_4rpr_model *model, size_t n, const
     planar_4rpr_real *X, planar_4rpr_real *basis, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int planar_4rpr_complete_acceleration(const planar_4rpr_model *model, const planar_4rpr_real *X,
-    const planar_4rpr_real *V, const planar_4rpr_real *A, planar_4rpr_real *completed);
+    const planar_4rpr_real *V, const planar_4rpr_real *A, const planar_4rpr_real *wrench,
+    planar_4rpr_real *completed);
 size_t planar_4rpr_complete_acceleration_batch(const planar_4rpr_model *model, size_t n, const
-    planar_4rpr_real *X, const planar_4rpr_real *V, const planar_4rpr_real *A, planar_4rpr_real
-    *completed, int *status);
+    planar_4rpr_real *X, const planar_4rpr_real *V, const planar_4rpr_real *A, const
+    planar_4rpr_real *wrench, planar_4rpr_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 216 mul, 140 add, 4 div, 4
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -219,12 +227,22 @@ int planar_4rpr_forward_kinematics(const planar_4rpr_model *model, const planar_
 size_t planar_4rpr_forward_kinematics_batch(const planar_4rpr_model *model, size_t n, const
     planar_4rpr_real *q_actuated, const planar_4rpr_real *X0, planar_4rpr_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 77 mul, 60 add, 4 div, 9 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (3), legs (4). */
+int planar_4rpr_condition(const planar_4rpr_model *model, const planar_4rpr_real *X,
+    planar_4rpr_real *sigma, planar_4rpr_real *legs);
+size_t planar_4rpr_condition_batch(const planar_4rpr_model *model, size_t n, const
+    planar_4rpr_real *X, planar_4rpr_real *sigma, planar_4rpr_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_4rpr_rotation(const planar_4rpr_real *X, planar_4rpr_real *R);
 size_t planar_4rpr_rotation_batch(size_t n, const planar_4rpr_real *X, planar_4rpr_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
 int planar_4rpr_pose(const planar_4rpr_real *t, const planar_4rpr_real *R, planar_4rpr_real *X);
 size_t planar_4rpr_pose_batch(size_t n, const planar_4rpr_real *t, const planar_4rpr_real *R,
     planar_4rpr_real *X, int *status);

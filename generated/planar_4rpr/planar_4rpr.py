@@ -13,7 +13,13 @@ tau:    leg 1 joint 2, leg 2 joint 2, leg 3 joint 2, leg 4 joint 2
 wrench: fx, fy, mz
 
 Impossible states (unreachable, singular, not finite) give NaN, in their rows only.
+Arguments are made of real numbers: TypeError for complex ones, truth values, text and masked
+arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows what is required, by
+position or keyword; all else is given by keyword.
 """
+
+import warnings
+from numbers import Real
 
 import numpy as np
 
@@ -31,6 +37,7 @@ __all__ = [
     "Parameters",
     "Z",
     "complete_acceleration",
+    "condition",
     "dynamics",
     "energy",
     "forward_dynamics",
@@ -52,15 +59,10 @@ NU = 4
 NC = 0
 NW = 3
 NJ = 8
-HOME_X = np.array([0.03, -0.02, 0.09999999999999999])
-HOME_Q = np.array([0.0, 0.62, 0.0, 0.62, 0.0, 0.62, 0.0, 0.62])
-HOME_X.setflags(write=False)
-HOME_Q.setflags(write=False)
 
-# Lengths below this fraction of a leg's size, and pivots below it, count as zero.
+# Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_PER_LEG = ("rpr_", )
 _LEGS = {  # positions of the legs of each type
     "rpr": (0, 1, 2, 3),
 }
@@ -129,25 +131,29 @@ _DEFAULTS = {
         [[0.00024, 0.0, 0.0], [0.0, 0.016120000000000002, 0.0], [0.0, 0.0, 0.016120000000000002]],
     ],
 }
-_RULES = {  # shape, entries that are zero by structure, what the values must be
-    "gravity": ((3,), (2,), ""),
-    "platform_mass": ((), (), "mass"),
-    "platform_centre_of_mass": ((3,), (2,), ""),
-    "platform_inertia": ((3, 3), (), "inertia"),
-    "rpr_base_point": ((4, 3), (2,), ""),
-    "rpr_base_frame": ((4, 3, 3), (), "rotation"),
-    "rpr_platform_point": ((4, 3), (2,), ""),
-    "rpr_link1_mass": ((4,), (), "mass"),
-    "rpr_link1_centre_of_mass": ((4, 3), (2,), ""),
-    "rpr_link1_inertia": ((4, 3, 3), (), "inertia"),
-    "rpr_link2_mass": ((4,), (), "mass"),
-    "rpr_link2_centre_of_mass": ((4, 3), (2,), ""),
-    "rpr_link2_inertia": ((4, 3, 3), (), "inertia"),
+_RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
+    "gravity": ((3,), (3,), (2,), "free"),
+    "platform_mass": ((), (), (), "mass"),
+    "platform_centre_of_mass": ((3,), (3,), (2,), "free"),
+    "platform_inertia": ((3, 3), (3, 3), (), "planar_inertia"),
+    "rpr_base_point": ((4, 3), (3,), (2,), "free"),
+    "rpr_base_frame": ((4, 3, 3), (3, 3), (), "planar_rotation"),
+    "rpr_platform_point": ((4, 3), (3,), (2,), "free"),
+    "rpr_link1_mass": ((4,), (), (), "mass"),
+    "rpr_link1_centre_of_mass": ((4, 3), (3,), (2,), "free"),
+    "rpr_link1_inertia": ((4, 3, 3), (3, 3), (), "planar_inertia"),
+    "rpr_link2_mass": ((4,), (), (), "mass"),
+    "rpr_link2_centre_of_mass": ((4, 3), (3,), (2,), "free"),
+    "rpr_link2_inertia": ((4, 3, 3), (3, 3), (), "planar_inertia"),
 }
 
 
 class Parameters:
     """Parameters of the model: frozen, with read-only copies of arrays.
+
+    Values obey the rules of a specification: masses are not negative, inertia tensors symmetric
+    and without negative principal moments, frames rotations, axes of length 1, and what the
+    structure fixes at zero is zero.  Copies and what is unpickled are made anew from the values.
 
     Attributes:
         gravity: acceleration of gravity, base frame [m/s^2], shape (3,).
@@ -166,14 +172,12 @@ class Parameters:
     """
 
     def __init__(self, **values):
-        """Defaults, with the given values in their place; ValueError if one is impossible."""
-        unknown = sorted(set(values) - set(_DEFAULTS))
-        if unknown:
-            raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
-        for name, rule in _RULES.items():
-            value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_cache", {})
+        """Defaults, with the given values in their place; ValueError if one is impossible.
+
+        TypeError for what is not made of real numbers.  A warning tells of an inertia that no
+        body has, by its principal moments.
+        """
+        _fill(self, values, values)
 
     def __setattr__(self, name, value):
         raise AttributeError("Parameters are frozen; use replace()")
@@ -183,7 +187,10 @@ class Parameters:
 
     def replace(self, **changes):
         """A copy with some values changed."""
-        return Parameters(**{**{name: getattr(self, name) for name in _RULES}, **changes})
+        return _fill(object.__new__(Parameters), {**self._values(), **changes}, changes)
+
+    def __reduce__(self):
+        return _remade, (self._values(),)
 
     def __eq__(self, other):
         if not isinstance(other, Parameters):
@@ -197,6 +204,10 @@ class Parameters:
         changed = [n for n in _RULES if not np.array_equal(getattr(self, n), _DEFAULTS[n])]
         return f"Parameters({', '.join(f'{n}={getattr(self, n)!r}' for n in changed)})"
 
+    def _values(self):
+        """All values by name."""
+        return {name: getattr(self, name) for name in _RULES}
+
     def _prepared(self):
         """Values that depend on the parameters alone, computed once."""
         if "model" not in self._cache:
@@ -204,48 +215,156 @@ class Parameters:
         return self._cache["model"]
 
 
-def _checked(name, value, shape, zeros, rule):
-    """A parameter as a read-only array (or float), or ValueError."""
-    value = np.array(value, dtype=float)
+def _fill(p, values, fresh):
+    """The parameters with these values, checked; fresh ones are warned of, where there is need."""
+    unknown = sorted(set(values) - set(_DEFAULTS))
+    if unknown:
+        raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
+    for name, rule in _RULES.items():
+        value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
+        object.__setattr__(p, name, value)
+        if rule[-1] == "inertia" and name in fresh:
+            _warn(name, value, 4)
+    object.__setattr__(p, "_cache", {})
+    return p
+
+
+def _remade(values):
+    """Parameters from the values of others: a copy, or what was pickled."""
+    return _fill(object.__new__(Parameters), values, ())
+
+
+_REAL = np.dtype(float)
+_KINDS = {"b": "truth values", "c": "complex numbers", "S": "text", "U": "text"}
+
+
+def _numbers(function, name, value):
+    """An argument as an array of floats; TypeError unless it is made of real numbers alone."""
+    try:
+        kind = _unfit(value)
+        if not kind:
+            return np.asarray(value, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{function}: {name} is no array of numbers: {error}") from None
+    raise TypeError(f"{function}: {name}: expected real numbers, got {kind}")
+
+
+def _unfit(value):
+    """What, other than real numbers, a value is made of; or an empty text."""
+    if isinstance(value, (list, tuple)):
+        if set(map(type, value)) <= {float, int, np.float64}:
+            return ""
+        return next(filter(None, map(_unfit, value)), "")
+    if isinstance(value, np.ma.MaskedArray):
+        return "a masked array"
+    if value is None:
+        return "None"
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        odd = (v for v in array.flat if not isinstance(v, Real) or isinstance(v, bool))
+        return next((type(v).__name__ for v in odd), "")
+    return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
+
+
+def _vector(function, name, value, size):
+    """An argument as an array of floats (..., size), or an error that names it."""
+    if type(value) is not np.ndarray or value.dtype is not _REAL:
+        value = _numbers(function, name, value)
+    if value.ndim == 0 or value.shape[-1] != size:
+        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
+    return value
+
+
+def _lead(**arguments):
+    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
+    leads = [v.shape[:-1] for v in arguments.values()]
+    if not any(leads):
+        return ()
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
+
+
+def _given(p):
+    """The parameters, by default the model's own; TypeError for anything else."""
+    if isinstance(p, Parameters):
+        return p
+    if p is None:
+        return _DEFAULT
+    kind = type(p).__name__
+    if kind == "Parameters":
+        kind = f"Parameters of {type(p).__module__} (another module, or this one imported anew)"
+    raise TypeError(f"p: expected Parameters, got {kind}; a wrench is given as wrench=")
+
+
+def _frozen(value):
+    """A copy that cannot be made writable again: its memory is a bytes object."""
+    return np.frombuffer(value.tobytes(), dtype=float).reshape(value.shape)
+
+
+def _checked(name, value, shape, core, zeros, rule):
+    """A parameter as a read-only array (or float); ValueError or TypeError if it is impossible."""
+    value = _numbers("Parameters", name, value) + 0.0  # a copy, without the sign of zero
     if value.shape != shape:
         raise ValueError(f"Parameters: {name} has shape {value.shape}, expected {shape}")
     if not np.all(np.isfinite(value)):
         raise ValueError(f"Parameters: {name} has entries that are not finite")
-    flat = value.reshape(-1, value[0].size if zeros and value.ndim > len(_core(name)) else value.size)
-    if any(np.any(np.abs(flat[:, k]) > 1e-9) for k in zeros):
+    if np.any(np.abs(value) > 1e+12):
+        raise ValueError(f"Parameters: {name} has entries beyond 1e+12 in size")
+    value = np.array(value)
+    each = value.reshape(-1, *core)
+    flat = value.reshape(len(each), -1)
+    if any(np.any(np.abs(flat[:, k]) > 1e-09) for k in zeros):
         raise ValueError(f"Parameters: {name} must be zero in entries {zeros}: the structure is fixed")
-    for k in zeros:
-        flat[:, k] = 0.0
-    message = _violates(value, rule)
+    flat[:, list(zeros)] = 0.0
+    message = _violates(each, rule)
     if message:
         raise ValueError(f"Parameters: {name} {message}")
-    value.setflags(write=False)
-    return value if shape else float(value)
-
-
-def _core(name):
-    """Shape of one leg's entry, or of the whole."""
-    shape = _RULES[name][0]
-    return shape[1:] if name.startswith(_PER_LEG) else shape
+    return _frozen(value) if shape else float(value)
 
 
 def _violates(value, rule):
-    """What is wrong with a parameter, or an empty text."""
+    """What is wrong with the values of a parameter, one after another; or an empty text."""
     if rule == "mass" and np.any(value < 0.0):
         return "must not be negative"
-    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-6):
+    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-06):
         return "must be of length 1"
-    if rule == "inertia" and np.any(np.abs(value - np.swapaxes(value, -1, -2)) > 1e-9 * (
-        1e-300 + np.max(np.abs(value)))):
-        return "must be symmetric"
-    if rule == "rotation":
-        error = np.abs(value @ np.swapaxes(value, -1, -2) - np.eye(3))
-        if np.any(error > 1e-6) or np.any(np.linalg.det(value) < 0.0):
-            return "must be rotation matrices"
-        if np.any(np.abs(value[..., 2, 2] - 1.0) > 1e-6):
-            return "must turn about the normal of the plane"
+    if rule == "planar_inertia" and np.any(value[:, 2, 2] < 0.0):
+        return "must have an izz that is not negative"
+    if rule == "inertia":
+        rounding = 1e-09 * np.max(np.abs(value), axis=(1, 2))
+        if np.any(np.max(np.abs(value - np.swapaxes(value, 1, 2)), axis=(1, 2)) > rounding):
+            return "must be symmetric to 1e-09 of its largest entry"
+        if np.any(np.linalg.eigvalsh(value)[:, 0] < -rounding):
+            return "must have no negative principal moments, to 1e-09 of its largest entry"
+    if rule in ("rotation", "planar_rotation") and not np.all(_are_rotations(value)):
+        return "must be rotation matrices: orthonormal to 1e-06, determinant +1"
+    if rule == "planar_rotation" and np.any(np.abs(value[:, 2, 2] - 1.0) > 1e-09):
+        return "must turn about the normal of the plane"
     return ""
 
+
+def _are_rotations(R):
+    """Which matrices (..., n, n) have orthonormal rows, to 1e-06, and a positive determinant."""
+    with np.errstate(all="ignore"):
+        error = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1]))
+        return np.all(error <= 1e-06, axis=(-1, -2)) & (np.linalg.det(R) > 0.0)
+
+
+def _warn(name, value, level):
+    """Tell of principal moments that no body has: the largest exceeds the sum of the others."""
+    for tensor in value.reshape(-1, 3, 3):
+        small, middle, large = np.linalg.eigvalsh(tensor)
+        if large > small + middle + 1e-09 * np.max(np.abs(tensor)):
+            warnings.warn(
+                f"Parameters: {name}: principal moments {small:.6g}, {middle:.6g}, {large:.6g} kg m^2"
+                " belong to no body: the largest exceeds the sum of the others", stacklevel=level)
+
+
+HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999]))
+HOME_Q = _frozen(np.array([0.0, 0.62, 0.0, 0.62, 0.0, 0.62, 0.0, 0.62]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
     "branch_1": np.array([1.0, 1.0, 1.0, 1.0]),
@@ -287,12 +406,6 @@ def _prepare(p):
     J_star_t_2 = J_star_t + platform_centre_of_mass_x*platform_centre_of_mass_x
     J_star_t_3 = J_star_t*platform_mass
     J_star_t_4 = J_star_t_2*platform_mass
-    # (rpr-G1) size of the leg, the measure of what is near singular
-    size_t = rpr_base_point_x*rpr_base_point_x + rpr_base_point_y*rpr_base_point_y
-    size_t_2 = rpr_platform_point_y*rpr_platform_point_y
-    size_t_3 = rpr_platform_point_x*rpr_platform_point_x + size_t_2
-    size_t_4 = size_t + size_t_3
-    size = sqrt(size_t_4)
     # (rpr-G3) inertia tensor of link 1 about the origin of link 1
     J_1_t = (
     rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
@@ -314,8 +427,10 @@ def _prepare(p):
     h_star_t_3 = rpr_link2_mass*rpr_platform_point_x
     h_star_t_4 = rpr_link2_mass*rpr_platform_point_y
     # (L3) inertia tensor about the platform origin
-    J_star_t_5 = rpr_link2_mass*size_t_2
-    J_star_t_6 = rpr_link2_mass*size_t_3
+    J_star_t_5 = rpr_platform_point_y*rpr_platform_point_y
+    J_star_t_6 = J_star_t_5 + rpr_platform_point_x*rpr_platform_point_x
+    J_star_t_7 = J_star_t_5*rpr_link2_mass
+    J_star_t_8 = J_star_t_6*rpr_link2_mass
     # (rpr-G2) first moment of link 1 about the origin of link 1
     h_1_x = rpr_link1_centre_of_mass_x*rpr_link1_mass
     h_1_y = rpr_link1_centre_of_mass_y*rpr_link1_mass
@@ -328,8 +443,10 @@ def _prepare(p):
     total_rpr = np.sum(np.broadcast_to(rpr_link2_mass, _rpr))
     total_rpr_x = np.sum(np.broadcast_to(h_star_t_3, _rpr))
     total_rpr_y = np.sum(np.broadcast_to(h_star_t_4, _rpr))
-    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_5, _rpr))
-    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_6, _rpr))
+    total_rpr_xx = np.sum(np.broadcast_to(J_star_t_7, _rpr))
+    total_rpr_zz = np.sum(np.broadcast_to(J_star_t_8, _rpr))
+    total_rpr_x_2 = np.sum(np.broadcast_to(rpr_platform_point_x, _rpr))
+    total_rpr_y_2 = np.sum(np.broadcast_to(rpr_platform_point_y, _rpr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_rpr
     # (L2) first moment about the platform origin
@@ -338,16 +455,21 @@ def _prepare(p):
     # (L3) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_rpr_xx
     J_star_zz = J_star_t_4 + platform_inertia_zz + total_rpr_zz
-    J_star_t_7 = J_star_xx - J_star_zz
-    J_star_t_8 = J_star_t_7 - J_star_xx
+    J_star_t_9 = J_star_xx - J_star_zz
+    J_star_t_10 = J_star_t_9 - J_star_xx
     # (M4) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
+    # (C1) centroid of the platform points
+    b_c_x = 0.25*total_rpr_x_2
+    b_c_y = 0.25*total_rpr_y_2
     shared = {
-        "J_star_t_8": float(J_star_t_8),
+        "J_star_t_10": float(J_star_t_10),
         "J_star_zz": float(J_star_zz),
         "Z_p_t": float(Z_p_t),
         "Z_p_t_2": float(Z_p_t_2),
+        "b_c_x": float(b_c_x),
+        "b_c_y": float(b_c_y),
         "gravity_x": float(gravity_x),
         "gravity_y": float(gravity_y),
         "h_star_x": float(h_star_x),
@@ -376,8 +498,6 @@ def _prepare(p):
             "rpr_link2_mass": np.broadcast_to(rpr_link2_mass, _rpr),
             "rpr_platform_point_x": np.broadcast_to(rpr_platform_point_x, _rpr),
             "rpr_platform_point_y": np.broadcast_to(rpr_platform_point_y, _rpr),
-            "size": np.broadcast_to(size, _rpr),
-            "size_t_4": np.broadcast_to(size_t_4, _rpr),
         },
     }
     return shared, legs
@@ -433,12 +553,13 @@ class _Floats:
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
+    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
 
 
 class _Arrays:
     """Functions on arrays over states: the way for batches."""
 
-    sqrt, sin, cos, atan2 = np.sqrt, np.sin, np.cos, np.arctan2
+    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
 
 _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
@@ -446,8 +567,8 @@ _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 def _evaluate(plan, p, **vectors):
     """Arrays of a plan at the vectors that it reads."""
-    p = _DEFAULT if p is None else p
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors.values()))
+    p = _given(p)
+    lead = _lead(**vectors)
     chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
     return _run(plan, p, *chosen)
 
@@ -576,7 +697,7 @@ def _dynamics_rpr(c, k, x, s, f):
     (
     J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
         rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-        rpr_platform_point_x, rpr_platform_point_y, size, size_t_4,
+        rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z, W_p_t = s
     # (rpr-K1) from the base point to the connection point
@@ -649,7 +770,7 @@ def _dynamics_rpr(c, k, x, s, f):
     Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
     # (M8) moment of the column's unit force about the platform origin
     H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (
     ok, (Q_t_4, Q_t_5, Q_t_6, M_ta_t, M_ta_t_2, M_aa_t, U_in_base_x, U_in_base_y, Z_a_t,),
         (axis_x_x, axis_x_y, H_a_2_z,),
@@ -657,7 +778,7 @@ def _dynamics_rpr(c, k, x, s, f):
 
 
 def _dynamics_after(c, s, t, f):
-    J_star_t_8, m_star = c
+    J_star_t_10, m_star = c
     h_star_in_base_x, h_star_in_base_y, Z_p_x, Z_p_y, Z_q_t = s
     (
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz,
@@ -670,7 +791,7 @@ def _dynamics_after(c, s, t, f):
     M_ta_xz = total_rpr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rpr_yz
     # (M3) rotational block of M
-    M_aa_zz = -J_star_t_8 - total_rpr_zz
+    M_aa_zz = -J_star_t_10 - total_rpr_zz
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_rpr_x
     Z_t_y = Z_p_y + total_rpr_y
@@ -708,7 +829,7 @@ def _M_rpr(c, k, x, s, f):
     (
     J_group_1_zz, branch_1, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx,
         rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x,
-        rpr_platform_point_y, size, size_t_4,
+        rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rpr-K1) from the base point to the connection point
@@ -744,12 +865,12 @@ def _M_rpr(c, k, x, s, f):
     M_ta_t_2 = Q_t_5*q_in_base_y + Q_t_6*q_in_base_x
     # (M3) rotational block of M
     M_aa_t = M_ta_t*q_in_base_y + M_ta_t_2*q_in_base_x
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (Q_t_4, Q_t_5, Q_t_6, M_ta_t, M_ta_t_2, M_aa_t,), (),)
 
 
 def _M_after(c, s, t, f):
-    J_star_t_8, m_star = c
+    J_star_t_10, m_star = c
     h_star_in_base_x, h_star_in_base_y = s
     total_rpr_xx, total_rpr_xy, total_rpr_yy, total_rpr_xz, total_rpr_yz, total_rpr_zz = t
     # (M1) translational block of M
@@ -759,7 +880,7 @@ def _M_after(c, s, t, f):
     M_ta_xz = total_rpr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_rpr_yz
     # (M3) rotational block of M
-    M_aa_zz = -J_star_t_8 - total_rpr_zz
+    M_aa_zz = -J_star_t_10 - total_rpr_zz
     ok = True
     return (
     ok, (M_tt_xx, total_rpr_xy, total_rpr_xy, M_tt_yy, M_ta_xz, M_ta_xz, M_ta_yz, M_ta_yz,
@@ -808,7 +929,7 @@ def _Z_rpr(c, k, x, s, f):
     (
     J_group_1_zz, branch_1, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx, rpr_base_frame_xy,
         rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x, rpr_base_point_y,
-        rpr_platform_point_x, rpr_platform_point_y, size, size_t_4,
+        rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z, W_p_t = s
     # (rpr-K1) from the base point to the connection point
@@ -863,7 +984,7 @@ def _Z_rpr(c, k, x, s, f):
     U_in_base_y = axis_x_y*phi_2_o_x - axis_x_x*c_o_y
     # (M7) rotational part of Z
     Z_a_t = U_in_base_y*q_in_base_x - U_in_base_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (U_in_base_x, U_in_base_y, Z_a_t,), (),)
 
 
@@ -899,8 +1020,7 @@ def _H_rpr(c, k, x, s, f):
     sqrt = f.sqrt
     (
     branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y, size,
-        size_t_4,
+        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rpr-K1) from the base point to the connection point
@@ -922,7 +1042,7 @@ def _H_rpr(c, k, x, s, f):
     axis_x_y = S_y*inv_root_1
     # (M8) moment of the column's unit force about the platform origin
     H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (), (axis_x_x, axis_x_y, H_a_2_z,),)
 
 
@@ -980,7 +1100,7 @@ def _required_rpr(c, k, x, s, f):
     (
     J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
         rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-        rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y, size, size_t_4,
+        rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z, t_ddot_x, t_ddot_y, alpha_z = s
     # (rpr-K1) from the base point to the connection point
@@ -1042,7 +1162,7 @@ def _required_rpr(c, k, x, s, f):
     c_in_base_y = axis_x_x*c_y - axis_x_y*phi_2_x
     # (E5) moment that actuators and external wrench must give
     R_a_t = c_in_base_y*q_in_base_x - c_in_base_x*q_in_base_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (c_in_base_x, c_in_base_y, R_a_t,), (axis_x_x, axis_x_y, H_a_2_z,),)
 
 
@@ -1079,8 +1199,7 @@ def _inverse_kinematics_rpr(c, k, x, s, f):
     atan2 = f.atan2
     (
     branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y, size,
-        size_t_4,
+        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rpr-K1) from the base point to the connection point
@@ -1098,7 +1217,7 @@ def _inverse_kinematics_rpr(c, k, x, s, f):
     inv_root_1 = 1.0/root_1
     # (rpr-K9) displacement of joint 1
     q_1 = atan2(inv_root_1*py_1, inv_root_1*px_1)
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (), (q_1, root_1,),)
 
 
@@ -1129,8 +1248,7 @@ def _joint_rates_rpr(c, k, x, s, f):
     sqrt = f.sqrt
     (
     branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y, size,
-        size_t_4,
+        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z = s
     # (rpr-K1) from the base point to the connection point
@@ -1156,7 +1274,7 @@ def _joint_rates_rpr(c, k, x, s, f):
     S_dot_tip_x = S_dot_x*axis_x_x + S_dot_y*axis_x_y
     # (rpr-V6) rate of joint 1
     qd_1 = inv_root_1*(S_dot_y*axis_x_x - S_dot_x*axis_x_y)
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (), (qd_1, S_dot_tip_x,),)
 
 
@@ -1196,8 +1314,7 @@ def _joint_accelerations_rpr(c, k, x, s, f):
     sqrt = f.sqrt
     (
     branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
-        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y, size,
-        size_t_4,
+        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z, t_ddot_x, t_ddot_y, alpha_z = s
     # (rpr-K1) from the base point to the connection point
@@ -1236,7 +1353,7 @@ def _joint_accelerations_rpr(c, k, x, s, f):
     rel_y = S_ddot_y*axis_x_x - S_ddot_x*axis_x_y - 2.0*S_dot_tip_x*qd_1
     # (rpr-A7) acceleration of joint 1
     qdd_1 = inv_root_1*rel_y
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (), (qdd_1, rel_x,),)
 
 
@@ -1277,8 +1394,7 @@ def _legs_rpr(c, k, x, s, f):
     (
     J_group_1_zz, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
         rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-        rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y, size,
-        size_t_4,
+        rpr_base_point_y, rpr_link2_mass, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx, t_dot_x, t_dot_y, omega_z, t_ddot_x, t_ddot_y, alpha_z = s
     # (rpr-K1) from the base point to the connection point
@@ -1337,7 +1453,7 @@ def _legs_rpr(c, k, x, s, f):
     c_true_y = c_y - acc_2_y*rpr_link2_mass
     c_true_in_base_x = axis_x_x*c_true_x - axis_x_y*c_true_y
     c_true_in_base_y = axis_x_x*c_true_y + axis_x_y*c_true_x
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (), (c_true_in_base_x, c_true_in_base_y, axis_x_x, axis_x_y,),)
 
 
@@ -1368,8 +1484,7 @@ def _potential_rpr(c, k, x, s, f):
     (
     b_r0_x, b_r0_y, branch_1, g_r0_x, g_r0_y, h_1_x, h_1_y, h_2_x, h_2_y, rpr_base_frame_xx,
         rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy, rpr_base_point_x,
-        rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y, size,
-        size_t_4,
+        rpr_base_point_y, rpr_link1_mass, rpr_platform_point_x, rpr_platform_point_y,
     ) = k
     t_x, t_y, R_xx, R_yx = s
     # (rpr-K1) from the base point to the connection point
@@ -1394,7 +1509,7 @@ def _potential_rpr(c, k, x, s, f):
     (c_1*g_r0_x + g_r0_y*s_1)*(h_1_x + h_2_x + rpr_link1_mass*(b_r0_x*c_1 + b_r0_y*s_1)) +
         (c_1*g_r0_y - g_r0_x*s_1)*(h_1_y + h_2_y + rpr_link1_mass*(b_r0_y*c_1 - b_r0_x*s_1))
     )
-    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * size_t_4) & (abs(root_1) > _TOLERANCE * size)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
     return (ok, (potential_t_2,), (),)
 
 
@@ -1405,6 +1520,73 @@ def _potential_after(c, s, t, f):
     potential = -potential_t - total_rpr
     ok = True
     return (ok, (potential,),)
+
+
+# condition: 77 mul, 60 add, 4 div, 9 sqrt, 0 trig
+def _condition_before(c, X, f):
+    sin = f.sin
+    cos = f.cos
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    R_xx = cos(X_2)
+    R_yx = sin(X_2)
+    ok = True
+    return (ok, (t_x, t_y, R_xx, R_yx,), (0.62,),)
+
+
+def _condition_rpr(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y = c
+    (
+    branch_1, rpr_base_frame_xx, rpr_base_frame_xy, rpr_base_frame_yx, rpr_base_frame_yy,
+        rpr_base_point_x, rpr_base_point_y, rpr_platform_point_x, rpr_platform_point_y,
+    ) = k
+    t_x, t_y, R_xx, R_yx = s
+    # (rpr-K1) from the base point to the connection point
+    q_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y
+    q_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x
+    S_x = q_in_base_x + t_x - rpr_base_point_x
+    S_y = q_in_base_y + t_y - rpr_base_point_y
+    # (rpr-K2) component along the reference direction
+    px_1 = S_x*rpr_base_frame_xx + S_y*rpr_base_frame_yx
+    # (rpr-K3) component across the reference direction
+    py_1 = S_x*rpr_base_frame_xy + S_y*rpr_base_frame_yy
+    # (rpr-K5) squared amplitude
+    rho2_1 = px_1*px_1 + py_1*py_1
+    # (rpr-K6) amplitude, with the sign of the branch
+    root_1 = branch_1*sqrt(rho2_1)
+    # (rpr-V4) reciprocal vector 1
+    inv_root_1 = 1.0/root_1
+    axis_x_x = S_x*inv_root_1
+    axis_x_y = S_y*inv_root_1
+    # (M8) moment of the column's unit force about the platform origin
+    H_a_2_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y
+    # (C2) rms distance of the platform points from their centroid
+    spread_t = b_c_x - rpr_platform_point_x
+    spread_t_2 = b_c_y - rpr_platform_point_y
+    spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
+    # (rpr-K5) squared amplitude
+    pivot_size = abs(rho2_1)
+    # (rpr-V4) reciprocal vector 1
+    pivot_size_2 = abs(root_1)
+    # (rpr-N18) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots = least(1.6129032258064515*sqrt(pivot_size), 1.6129032258064517*pivot_size_2)
+    ok = (abs(rho2_1) > _TOLERANCE * _TOLERANCE * 0.3844) & (abs(root_1) > _TOLERANCE * 0.62)
+    return (ok, (spread_t_3,), (axis_x_x, axis_x_y, H_a_2_z, least_pivots,),)
+
+
+def _condition_after(c, s, t, f):
+    sqrt = f.sqrt
+    total_rpr, = t
+    # (C2) rms distance of the platform points from their centroid
+    spread = 0.5*sqrt(total_rpr)
+    ok = True
+    return (ok, (spread,),)
 
 
 _DYNAMICS = _Plan(
@@ -1423,8 +1605,7 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 4))),
 ('gravity_x', 'gravity_y'),
 ('J_group_1_zz', 'branch_1', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y', 'rpr_base_frame_xx',
             'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy', 'rpr_base_point_x',
-            'rpr_base_point_y', 'rpr_platform_point_x', 'rpr_platform_point_y', 'size',
-            'size_t_4'),
+            'rpr_base_point_y', 'rpr_platform_point_x', 'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 9),
             9,
@@ -1437,7 +1618,7 @@ arrays=(('M', (3, 3)), ('Z', (3,)), ('H', (3, 4))),
     ),
     after=_Part(
         _dynamics_after,
-('J_star_t_8', 'm_star'),
+('J_star_t_10', 'm_star'),
 (7, 8, 10, 11, 12),
         (
 (0, 0), (0, 1), (0, 3), (0, 4), (0, 2), (0, 6), (0, 5), (0, 7), (0, 8), (1, 0), (1, 1), (1, 2),
@@ -1460,7 +1641,7 @@ arrays=(('M', (3, 3)),),
 (),
 ('J_group_1_zz', 'branch_1', 'h_2_x', 'h_2_y', 'rpr_base_frame_xx', 'rpr_base_frame_xy',
             'rpr_base_frame_yx', 'rpr_base_frame_yy', 'rpr_base_point_x', 'rpr_base_point_y',
-            'rpr_platform_point_x', 'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_x', 'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3),
             6,
@@ -1470,7 +1651,7 @@ arrays=(('M', (3, 3)),),
     ),
     after=_Part(
         _M_after,
-('J_star_t_8', 'm_star'),
+('J_star_t_10', 'm_star'),
 (4, 5),
         (
 (0, 0), (0, 1), (0, 3), (0, 4), (0, 2), (0, 6), (0, 5), (0, 7), (0, 8),
@@ -1493,8 +1674,7 @@ arrays=(('Z', (3,)),),
 ('gravity_x', 'gravity_y'),
 ('J_group_1_zz', 'branch_1', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y', 'rpr_base_frame_xx',
             'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy', 'rpr_base_point_x',
-            'rpr_base_point_y', 'rpr_platform_point_x', 'rpr_platform_point_y', 'size',
-            'size_t_4'),
+            'rpr_base_point_y', 'rpr_platform_point_x', 'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7),
             3,
@@ -1525,7 +1705,7 @@ arrays=(('H', (3, 4)),),
 (),
 ('branch_1', 'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3),
             0,
@@ -1554,7 +1734,7 @@ arrays=(('required', (3,)), ('H', (3, 4))),
 ('J_group_1_zz', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y',
             'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9),
             3,
@@ -1588,7 +1768,7 @@ arrays=(('q', (8,)),),
 (),
 ('branch_1', 'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3),
             0,
@@ -1615,7 +1795,7 @@ arrays=(('qd', (8,)),),
 (),
 ('branch_1', 'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3, 4, 5, 6),
             0,
@@ -1642,7 +1822,7 @@ arrays=(('qdd', (8,)),),
 (),
 ('branch_1', 'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9),
             0,
@@ -1670,7 +1850,7 @@ arrays=(('leg_force', (4, 3)), ('drive', (4, 3))),
 ('J_group_1_zz', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y',
             'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_link2_mass', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3, 4, 5, 6, 7, 8, 9),
             0,
@@ -1700,7 +1880,7 @@ arrays=(('potential', (1,)),),
 ('b_r0_x', 'b_r0_y', 'branch_1', 'g_r0_x', 'g_r0_y', 'h_1_x', 'h_1_y', 'h_2_x', 'h_2_y',
             'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
             'rpr_base_point_x', 'rpr_base_point_y', 'rpr_link1_mass', 'rpr_platform_point_x',
-            'rpr_platform_point_y', 'size', 'size_t_4'),
+            'rpr_platform_point_y'),
 (),
 (0, 1, 2, 3),
             1,
@@ -1715,10 +1895,46 @@ arrays=(('potential', (1,)),),
         ((0, 0),),
     ),
 )
+_CONDITION = _Plan(
+    inputs=('X',),
+arrays=(('H', (3, 4)), ('lengths', (2,)), ('pivots', (4,)), ('reach', (4,))),
+    before=_Part(
+        _condition_before,
+(),
+        None,
+        ((1, 1),),
+    ),
+    legs=(
+        _LegPart(
+            _condition_rpr,
+            "rpr",
+('b_c_x', 'b_c_y'),
+('branch_1', 'rpr_base_frame_xx', 'rpr_base_frame_xy', 'rpr_base_frame_yx', 'rpr_base_frame_yy',
+            'rpr_base_point_x', 'rpr_base_point_y', 'rpr_platform_point_x',
+            'rpr_platform_point_y'),
+(),
+(0, 1, 2, 3),
+            1,
+            (
+(0, (0, 1, 2, 3)),
+(0, (4, 5, 6, 7)),
+(0, (8, 9, 10, 11)),
+(2, (0, 1, 2, 3)),
+            ),
+        ),
+    ),
+    after=_Part(
+        _condition_after,
+(),
+(),
+        ((1, 0),),
+    ),
+)
 _DEFAULT = Parameters()
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
 
 
 def _solve(a, b):
@@ -1749,7 +1965,8 @@ def _solve_one(a, b):
         a[i] = [v / size for v in row] + [b[i] / size]
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[best] = a[best], a[k]
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
         if not abs(a[k][k]) > _PIVOT:
             return failure
         head = a[k]
@@ -1770,7 +1987,9 @@ def _solve_block(a, b):
     a = np.concatenate((a, b[:, :, None]), axis=2) / size
     which = np.arange(states)
     for k in range(n):
-        best = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        column = np.abs(a[:, k:, k])
+        best = np.argmax(column, axis=1)
+        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
         a[which, k], a[which, best] = a[which, best], a[which, k].copy()
         good &= np.abs(a[:, k, k]) > _PIVOT
         factor = a[:, k + 1 :, k] / a[:, k, k, None]
@@ -1780,14 +1999,6 @@ def _solve_block(a, b):
         x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
     x[~good] = np.nan
     return x
-
-
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or ValueError."""
-    value = np.asarray(value, dtype=float)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
 
 
 def M(X, p=None):
@@ -1834,46 +2045,54 @@ def _known(array, axes, *inputs):
     return _together(failed, (array, axes))[0]
 
 
-def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
+def _weights(weights):
+    """The weights (..., NU) of the drives."""
+    if weights is None:
+        return np.ones(NU)
+    weights = _vector("inverse_dynamics", "weights", weights, NU)
+    if not np.all((weights > 0.0) & (weights < np.inf)):
+        raise ValueError("inverse_dynamics: weights must be positive and finite")
+    return weights
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
-    The wrench (..., NW) acts on the platform. weights (NU,) > 0: least sum of weights tau^2.
+    The wrench (..., NW) acts on the platform. weights (..., NU) > 0: least sum of weights tau^2.
     """
     X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
     A = _vector("inverse_dynamics", "A", A, NV)
+    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
+    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
     required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - _external("inverse_dynamics", wrench)
+    force = required - external
     return _drive_forces(matrix, rest[0] if rest else None, force, weights)
 
 
-def forward_dynamics(X, V, tau, p=None, wrench=None):
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
     """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau = _vector("forward_dynamics", "tau", tau, NU)
+    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
+    _lead(X=X, V=V, tau=tau, wrench=external)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    external = _external("forward_dynamics", wrench)
     with np.errstate(all="ignore"):
         force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _solve(inertia, force)
 
 
-def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
-    """
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
     X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A = _vector("complete_acceleration", "A", A, NV)
-    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
+    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
     return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
     """tau of least weighted norm with H tau = force."""
     rows = list(_DRIVEN_ROWS)
-    scale = np.ones(NU) if weights is None else _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all(scale > 0.0):
-        raise ValueError("inverse_dynamics: weights must be positive")
-    scale = 1.0 / np.sqrt(scale)
-    h, f = matrix[..., rows, :] * scale, force[..., rows]
+    scale = 1.0 / np.sqrt(weights)
+    h, f = matrix[..., rows, :] * scale[..., None, :], force[..., rows]
     return scale * _least_norm(h, f)
 
 
@@ -1895,13 +2114,68 @@ def _least_norm(h, f):
 
 
 def null_space(X, p=None):
-    """Orthonormal basis (..., NU, NU - rank) of the tau with H tau = 0."""
-    matrix = H(X, p)[..., list(_DRIVEN_ROWS), :]
+    """Orthonormal basis (..., NU, 1) of the tau with H tau = 0."""
+    matrix = H(X, p)
     bad = np.isnan(matrix).any(axis=(-1, -2))
     _, _, vt = np.linalg.svd(np.where(bad[..., None, None], 0.0, matrix))
-    basis = np.array(np.swapaxes(vt[..., min(len(_DRIVEN_ROWS), NU) :, :], -1, -2))
+    basis = np.array(np.swapaxes(vt[..., 3:, :], -1, -2))
     basis[bad] = np.nan
     return basis
+
+
+_MOMENT_ROWS = (2,)  # rows of H that are moments
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: sigma (..., 3), legs (..., 4), status (...).
+
+    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
+    rule the rms distance of the platform points from their centroid (where they coincide, the
+    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
+    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
+    converged, as in C; sigma and legs are NaN where it is not 0.
+    """
+    return _condition("condition", X, p, length)
+
+
+def _condition(name, X, p, length, columns=NU):
+    """sigma of the first columns of H, margins of the legs, status codes."""
+    X = _vector(name, "X", X, NQ)
+    p = _DEFAULT if p is None else p
+    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
+        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    lead = X.shape[:-1]
+    vectors = {"X": X.reshape(-1, NQ)}
+    states = len(vectors["X"])
+    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
+    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
+    with np.errstate(all="ignore"):
+        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
+        _run_block(_CONDITION, p, flat, made)
+        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
+        spread, legs_size = found["lengths"].T
+        if length is None:
+            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
+        matrix = found["H"]
+        matrix[:, list(_MOMENT_ROWS)] /= length
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
+        status = np.select(
+            [
+                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
+                ~(found["reach"] >= 0.0).all(axis=1),
+                ~(found["pivots"] > _TOLERANCE).all(axis=1),
+                ~finite,
+            ],
+            [3, 1, 2, 3],
+            0,
+        )
+    good = (status == 0)[:, None]
+    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
+    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
+    return (
+        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
+        status.reshape(lead)[()],
+    )
 
 
 def inverse_kinematics(X, p=None):
@@ -1922,15 +2196,16 @@ def joint_accelerations(X, V, A, p=None):
         _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
 
 
-def leg_reactions(X, V, A, p=None, wrench=None):
+def leg_reactions(X, V, A, p=None, *, wrench=None):
     """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
 
     The drives give the forces of `inverse_dynamics`.
     """
     X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
     A = _vector("leg_reactions", "A", A, NV)
+    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
     forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench)
+    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
     parts = [(tau, drive, _ACTUATOR_LEGS)]
     forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
     for amounts, vectors, legs in parts:
@@ -1942,6 +2217,7 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
+    _lead(X=X, V=V)
     inertia = M(X, p)
     with np.errstate(all="ignore"):
         kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
@@ -1956,8 +2232,8 @@ def forward_kinematics(q_actuated, X0, p=None):
     Extra coordinates that the drives do not determine stay.  NaN where no X is found.
     """
     q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0 = _vector("forward_kinematics", "X0", X0, NQ)
-    lead = np.broadcast_shapes(q_actuated.shape[:-1], X0.shape[:-1])
+    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
+    lead = _lead(q_actuated=q_actuated, X0=X0)
     target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
     X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
     found = [_find_pose(q, x, p) for q, x in zip(target, X)]
@@ -1998,6 +2274,32 @@ def _find_pose(q_actuated, X, p):
     return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
 
 
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
+
+
 def rotation(X):
     """base_R_platform (..., 2, 2) at X (..., NQ)."""
     X = _vector("rotation", "X", X, NQ)
@@ -2006,13 +2308,15 @@ def rotation(X):
     return _known(np.stack((np.stack((c, -s), axis=-1), np.stack((s, c), axis=-1)), axis=-2), 2, X)
 
 
-def pose(t, R):
-    """X of the platform at origin t (..., 2) with rotation R (..., 2, 2); extra coordinates zero."""
-    R, t = np.asarray(R, dtype=float), _vector("pose", "t", t, 2)
-    if R.shape[-2:] != (2, 2):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., 2, 2)")
+def pose(t, R, *, nearest=False):
+    """X of the platform at origin t (..., 2) with rotation R (..., 2, 2); extra coordinates zero.
+
+    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
+    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    """
+    R, t = _rotations(R, 2, nearest), _vector("pose", "t", t, 2)
     phi = np.arctan2(R[..., 1, 0], R[..., 0, 0])[..., None]
-    lead = np.broadcast_shapes(t.shape[:-1], phi.shape[:-1])
+    lead = _lead(t=t, R=phi)
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, phi, np.zeros(NQ - 3))]
     return _known(np.concatenate(parts, axis=-1), 1, R.reshape(*R.shape[:-2], 4))
 
@@ -2020,7 +2324,7 @@ def pose(t, R):
 def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV): V itself."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    return _known(np.array(np.broadcast_to(V, np.broadcast_shapes(X.shape, V.shape))), 1, X)
+    return _known(np.array(np.broadcast_to(V, (*_lead(X=X, V=V), NV))), 1, X)
 
 
 def _moved(X, step):

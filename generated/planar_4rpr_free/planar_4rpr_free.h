@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask planar_4rpr_free_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so planar_4rpr_free.c refuses them unless PLANAR_4RPR_FREE_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as PLANAR_4RPR_FREE_OK.
  */
 #ifndef PLANAR_4RPR_FREE_H_INCLUDED
 #define PLANAR_4RPR_FREE_H_INCLUDED
@@ -101,30 +107,31 @@ typedef struct {
 
 /* What depends on the parameters alone; set by planar_4rpr_free_prepare, then only read. */
 typedef struct {
-    planar_4rpr_free_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x,
-            h_star_y, m_star;
+    planar_4rpr_free_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, m_star;
     /* legs of type rpr */
     planar_4rpr_free_real J_group_1_rpr_zz[3], b_rpr_r0_x[3], b_rpr_r0_y[3], branch_1_rpr[3],
             g_r0_x[3], g_r0_y[3], h_1_rpr_x[3], h_1_rpr_y[3], h_2_rpr_x[3], h_2_rpr_y[3],
             rpr_base_frame_xx[3], rpr_base_frame_xy[3], rpr_base_frame_yx[3], rpr_base_frame_yy[3],
             rpr_base_point_x[3], rpr_base_point_y[3], rpr_link1_mass[3], rpr_link2_mass[3],
-            rpr_platform_point_x[3], rpr_platform_point_y[3], size_rpr[3], size_rpr_t_4[3];
+            rpr_platform_point_x[3], rpr_platform_point_y[3];
     /* legs of type rpr2 */
     planar_4rpr_free_real J_group_1_rpr2_zz[1], b_rpr2_r0_x[1], b_rpr2_r0_y[1], branch_1_rpr2[1],
             g_r0_x_2[1], g_r0_y_2[1], h_1_rpr2_x[1], h_1_rpr2_y[1], h_2_rpr2_x[1], h_2_rpr2_y[1],
             rpr2_base_frame_xx[1], rpr2_base_frame_xy[1], rpr2_base_frame_yx[1],
             rpr2_base_frame_yy[1], rpr2_base_point_x[1], rpr2_base_point_y[1], rpr2_link1_mass[1],
-            rpr2_link2_mass[1], rpr2_platform_point_x[1], rpr2_platform_point_y[1], size_rpr2[1],
-            size_rpr2_t_4[1];
+            rpr2_link2_mass[1], rpr2_platform_point_x[1], rpr2_platform_point_y[1];
 } planar_4rpr_free_model;
 
 extern const planar_4rpr_free_params planar_4rpr_free_default_params;
 extern const planar_4rpr_free_real planar_4rpr_free_HOME_X[PLANAR_4RPR_FREE_NQ];
 extern const planar_4rpr_free_real planar_4rpr_free_HOME_Q[PLANAR_4RPR_FREE_NJ];
 
-/* Prepare a model.  PLANAR_4RPR_FREE_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  PLANAR_4RPR_FREE_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_4rpr_free_prepare(const planar_4rpr_free_params *params, planar_4rpr_free_model *model);
 
 /* Inertia matrix M. 140 mul, 105 add, 4 div, 4 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -201,14 +208,14 @@ size_t planar_4rpr_free_forward_dynamics_batch(const planar_4rpr_free_model *mod
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
     *tau, const planar_4rpr_free_real *wrench, planar_4rpr_free_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int planar_4rpr_free_complete_acceleration(const planar_4rpr_free_model *model, const
     planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real *A,
-    planar_4rpr_free_real *completed);
+    const planar_4rpr_free_real *wrench, planar_4rpr_free_real *completed);
 size_t planar_4rpr_free_complete_acceleration_batch(const planar_4rpr_free_model *model, size_t n,
     const planar_4rpr_free_real *X, const planar_4rpr_free_real *V, const planar_4rpr_free_real
-    *A, planar_4rpr_free_real *completed, int *status);
+    *A, const planar_4rpr_free_real *wrench, planar_4rpr_free_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 216 mul, 140 add, 4 div, 4
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -237,12 +244,23 @@ size_t planar_4rpr_free_forward_kinematics_batch(const planar_4rpr_free_model *m
     const planar_4rpr_free_real *q_actuated, const planar_4rpr_free_real *X0,
     planar_4rpr_free_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 74 mul, 60 add, 3 div, 9 sqrt, 0 trig; the singular values apart. In: X (NQ). Out: sigma
+   (3), legs (4). */
+int planar_4rpr_free_condition(const planar_4rpr_free_model *model, const planar_4rpr_free_real
+    *X, planar_4rpr_free_real *sigma, planar_4rpr_free_real *legs);
+size_t planar_4rpr_free_condition_batch(const planar_4rpr_free_model *model, size_t n, const
+    planar_4rpr_free_real *X, planar_4rpr_free_real *sigma, planar_4rpr_free_real *legs, int
+    *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_4rpr_free_rotation(const planar_4rpr_free_real *X, planar_4rpr_free_real *R);
 size_t planar_4rpr_free_rotation_batch(size_t n, const planar_4rpr_free_real *X,
     planar_4rpr_free_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
 int planar_4rpr_free_pose(const planar_4rpr_free_real *t, const planar_4rpr_free_real *R,
     planar_4rpr_free_real *X);
 size_t planar_4rpr_free_pose_batch(size_t n, const planar_4rpr_free_real *t, const

@@ -3,6 +3,12 @@
 
 #include "planar_mixed.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(PLANAR_MIXED_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define PLANAR_MIXED_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef planar_mixed_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -229,7 +267,17 @@ INLINE int all_about_z(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 9) {
-        ok &= magnitude(x[8] - 1) <= R(1e-6);
+        ok &= magnitude(x[8] - 1) <= SNAPPED;
+    }
+    return ok;
+}
+
+/* izz alone counts in the plane. */
+INLINE int all_planar_inertias(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= x[9*i + 8] >= 0;
     }
     return ok;
 }
@@ -339,80 +387,80 @@ const planar_mixed_real planar_mixed_HOME_Q[PLANAR_MIXED_NJ] = {R(1.947212705196
 static int acceptable(const planar_mixed_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
+    ok &= all_within(&p->gravity[0], 3);
     ok &= all_zero(&p->gravity[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->rpr_base_point[0][0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rpr_base_point[0][0], 3);
     ok &= all_zero(&p->rpr_base_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rpr_base_frame[0][0][0], 9);
+    ok &= all_within(&p->rpr_base_frame[0][0][0], 9);
     ok &= all_rotations(&p->rpr_base_frame[0][0][0], 1);
     ok &= all_about_z(&p->rpr_base_frame[0][0][0], 1);
-    ok &= all_finite(&p->rpr_platform_point[0][0], 3);
+    ok &= all_within(&p->rpr_platform_point[0][0], 3);
     ok &= all_zero(&p->rpr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rpr_link1_mass[0], 1);
+    ok &= all_within(&p->rpr_link1_mass[0], 1);
     ok &= none_negative(&p->rpr_link1_mass[0], 1);
-    ok &= all_finite(&p->rpr_link1_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rpr_link1_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->rpr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rpr_link1_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rpr_link1_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rpr_link2_mass[0], 1);
+    ok &= all_within(&p->rpr_link1_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->rpr_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->rpr_link2_mass[0], 1);
     ok &= none_negative(&p->rpr_link2_mass[0], 1);
-    ok &= all_finite(&p->rpr_link2_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rpr_link2_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->rpr_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rpr_link2_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rpr_link2_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrr_base_point[0][0], 3);
+    ok &= all_within(&p->rpr_link2_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->rpr_link2_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrr_base_point[0][0], 3);
     ok &= all_zero(&p->rrr_base_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrr_base_frame[0][0][0], 9);
+    ok &= all_within(&p->rrr_base_frame[0][0][0], 9);
     ok &= all_rotations(&p->rrr_base_frame[0][0][0], 1);
     ok &= all_about_z(&p->rrr_base_frame[0][0][0], 1);
-    ok &= all_finite(&p->rrr_platform_point[0][0], 3);
+    ok &= all_within(&p->rrr_platform_point[0][0], 3);
     ok &= all_zero(&p->rrr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrr_joint2_offset[0][0], 3);
+    ok &= all_within(&p->rrr_joint2_offset[0][0], 3);
     ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrr_platform_joint_offset[0][0], 3);
+    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 3);
     ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrr_link1_mass[0], 1);
+    ok &= all_within(&p->rrr_link1_mass[0], 1);
     ok &= none_negative(&p->rrr_link1_mass[0], 1);
-    ok &= all_finite(&p->rrr_link1_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrr_link1_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rrr_link1_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrr_link2_mass[0], 1);
+    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrr_link2_mass[0], 1);
     ok &= none_negative(&p->rrr_link2_mass[0], 1);
-    ok &= all_finite(&p->rrr_link2_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->rrr_link2_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->rrr_link2_inertia[0][0][0], 1);
-    ok &= all_finite(&p->prr_base_point[0][0], 3);
+    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], 1);
+    ok &= all_within(&p->prr_base_point[0][0], 3);
     ok &= all_zero(&p->prr_base_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prr_base_frame[0][0][0], 9);
+    ok &= all_within(&p->prr_base_frame[0][0][0], 9);
     ok &= all_rotations(&p->prr_base_frame[0][0][0], 1);
     ok &= all_about_z(&p->prr_base_frame[0][0][0], 1);
-    ok &= all_finite(&p->prr_platform_point[0][0], 3);
+    ok &= all_within(&p->prr_platform_point[0][0], 3);
     ok &= all_zero(&p->prr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prr_platform_joint_offset[0][0], 3);
+    ok &= all_within(&p->prr_platform_joint_offset[0][0], 3);
     ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->prr_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prr_link1_mass[0], 1);
+    ok &= all_within(&p->prr_link1_mass[0], 1);
     ok &= none_negative(&p->prr_link1_mass[0], 1);
-    ok &= all_finite(&p->prr_link1_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->prr_link1_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->prr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prr_link1_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->prr_link1_inertia[0][0][0], 1);
-    ok &= all_finite(&p->prr_link2_mass[0], 1);
+    ok &= all_within(&p->prr_link1_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->prr_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->prr_link2_mass[0], 1);
     ok &= none_negative(&p->prr_link2_mass[0], 1);
-    ok &= all_finite(&p->prr_link2_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->prr_link2_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->prr_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prr_link2_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->prr_link2_inertia[0][0][0], 1);
+    ok &= all_within(&p->prr_link2_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->prr_link2_inertia[0][0][0], 1);
     return ok;
 }
 
@@ -427,16 +475,24 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     real total_rpr_y = 0;
     real total_rpr_xx = 0;
     real total_rpr_zz = 0;
+    real total_rpr_x_2 = 0;
+    real total_rpr_y_2 = 0;
     real total_rrr = 0;
     real total_rrr_x = 0;
     real total_rrr_y = 0;
     real total_rrr_xx = 0;
     real total_rrr_zz = 0;
+    real total_rrr_x_2 = 0;
+    real total_rrr_y_2 = 0;
+    real total_rrr_2 = 0;
     real total_prr = 0;
     real total_prr_x = 0;
     real total_prr_y = 0;
     real total_prr_xx = 0;
     real total_prr_zz = 0;
+    real total_prr_x_2 = 0;
+    real total_prr_y_2 = 0;
+    real total_prr_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -472,13 +528,6 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real rpr_link2_inertia_zz = params->rpr_link2_inertia[leg][2][2];
         static const signed char signs_branch_1_rpr[] = {1};
         const real branch_1_rpr = signs_branch_1_rpr[leg];
-        /* (rpr-G1) size of the leg, the measure of what is near singular */
-        const real size_rpr_t = rpr_base_point_x*rpr_base_point_x +
-            rpr_base_point_y*rpr_base_point_y;
-        const real size_rpr_t_2 = rpr_platform_point_y*rpr_platform_point_y;
-        const real size_rpr_t_3 = rpr_platform_point_x*rpr_platform_point_x + size_rpr_t_2;
-        const real size_rpr_t_4 = size_rpr_t + size_rpr_t_3;
-        const real size_rpr = root(size_rpr_t_4);
         /* (rpr-G3) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_rpr_t = rpr_link1_centre_of_mass_x*rpr_link1_centre_of_mass_x +
             rpr_link1_centre_of_mass_y*rpr_link1_centre_of_mass_y;
@@ -495,8 +544,10 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real h_star_t_3 = rpr_link2_mass*rpr_platform_point_x;
         const real h_star_t_4 = rpr_link2_mass*rpr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_5 = rpr_link2_mass*size_rpr_t_2;
-        const real J_star_t_6 = rpr_link2_mass*size_rpr_t_3;
+        const real J_star_t_5 = rpr_platform_point_y*rpr_platform_point_y;
+        const real J_star_t_6 = J_star_t_5 + rpr_platform_point_x*rpr_platform_point_x;
+        const real J_star_t_7 = J_star_t_5*rpr_link2_mass;
+        const real J_star_t_8 = J_star_t_6*rpr_link2_mass;
         /* (rpr-G2) first moment of link 1 about the origin of link 1 */
         const real h_1_rpr_x = rpr_link1_centre_of_mass_x*rpr_link1_mass;
         const real h_1_rpr_y = rpr_link1_centre_of_mass_y*rpr_link1_mass;
@@ -528,13 +579,13 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->rpr_link2_mass[leg] = rpr_link2_mass;
         model->rpr_platform_point_x[leg] = rpr_platform_point_x;
         model->rpr_platform_point_y[leg] = rpr_platform_point_y;
-        model->size_rpr[leg] = size_rpr;
-        model->size_rpr_t_4[leg] = size_rpr_t_4;
         total_rpr += rpr_link2_mass;
         total_rpr_x += h_star_t_3;
         total_rpr_y += h_star_t_4;
-        total_rpr_xx += J_star_t_5;
-        total_rpr_zz += J_star_t_6;
+        total_rpr_xx += J_star_t_7;
+        total_rpr_zz += J_star_t_8;
+        total_rpr_x_2 += rpr_platform_point_x;
+        total_rpr_y_2 += rpr_platform_point_y;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
         const real rrr_base_point_x = params->rrr_base_point[leg][0];
@@ -564,32 +615,28 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real Kd_1_rrr_t_2 = R(0.5)*Kd_1_rrr_t;
         const real Kd_1_rrr_t_3 = R(0.5)*uu_2_rrr_t;
-        /* (rrr-G1) size of the leg, the measure of what is near singular */
-        const real size_rrr_t = rrr_base_point_x*rrr_base_point_x +
-            rrr_base_point_y*rrr_base_point_y;
-        const real size_rrr_t_2 = rrr_platform_point_y*rrr_platform_point_y;
-        const real size_rrr_t_3 = rrr_platform_point_x*rrr_platform_point_x + size_rrr_t_2;
-        const real size_rrr_t_4 = Kd_1_rrr_t + size_rrr_t + size_rrr_t_3 + uu_2_rrr_t;
-        const real size_rrr = root(size_rrr_t_4);
+        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_rrr_t = R(4.58151643161e-07) + Kd_1_rrr_t + uu_2_rrr_t;
+        const real size_rrr = root(size_rrr_t);
         /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t_4;
+        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t;
         /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
         const real inv_Kd_1_rrr_t_5 = 1/Kd_1_rrr_t;
         /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_rrr_t = 1/uu_2_rrr_t;
-        /* (rrr-G3) inertia tensor of link 1 about the origin of link 1 */
+        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_rrr_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
         const real J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass;
-        /* (rrr-G4) connection point to the centre of mass of link 2 */
+        /* (rrr-G5) connection point to the centre of mass of link 2 */
         const real rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G6) inertia tensor of link 2 about the connection point */
+        /* (rrr-G7) inertia tensor of link 2 about the connection point */
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
         /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
         const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
-        /* (rrr-G5) first moment of link 2 about the connection point */
+        /* (rrr-G6) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
         /* (rrr-V6) reciprocal vector 2 */
@@ -609,13 +656,15 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real h_star_t_5 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_6 = rrr_link2_mass*rrr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_7 = rrr_link2_mass*size_rrr_t_2;
-        const real J_star_t_8 = rrr_link2_mass*size_rrr_t_3;
+        const real J_star_t_9 = rrr_platform_point_y*rrr_platform_point_y;
+        const real J_star_t_10 = J_star_t_9 + rrr_platform_point_x*rrr_platform_point_x;
+        const real J_star_t_11 = J_star_t_9*rrr_link2_mass;
+        const real J_star_t_12 = J_star_t_10*rrr_link2_mass;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
         const real g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G2) first moment of link 1 about the origin of link 1 */
+        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
         const real h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (V1) potential energy */
@@ -623,6 +672,10 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
             rrr_base_frame_yx*rrr_base_point_y;
         const real b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
+        /* (rrr-K8) squared amplitude */
+        const real inv_rho2_1_rrr_t_4 = 1/rho2_1_rrr_t;
+        /* (rrr-V5) reciprocal vector 1 */
+        const real inv_size_rrr = 1/size_rrr;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
         model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
@@ -642,7 +695,9 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->h_2_rrr_x[leg] = h_2_rrr_x;
         model->h_2_rrr_y[leg] = h_2_rrr_y;
         model->inv_Kd_1_rrr_t_5[leg] = inv_Kd_1_rrr_t_5;
+        model->inv_rho2_1_rrr_t_4[leg] = inv_rho2_1_rrr_t_4;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
+        model->inv_size_rrr[leg] = inv_size_rrr;
         model->inv_uu_2_rrr_t[leg] = inv_uu_2_rrr_t;
         model->rho2_1_rrr_t[leg] = rho2_1_rrr_t;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
@@ -661,8 +716,11 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         total_rrr += rrr_link2_mass;
         total_rrr_x += h_star_t_5;
         total_rrr_y += h_star_t_6;
-        total_rrr_xx += J_star_t_7;
-        total_rrr_zz += J_star_t_8;
+        total_rrr_xx += J_star_t_11;
+        total_rrr_zz += J_star_t_12;
+        total_rrr_x_2 += rrr_platform_point_x;
+        total_rrr_y_2 += rrr_platform_point_y;
+        total_rrr_2 += size_rrr_t;
     }
     for (size_t leg = 0; leg < 1; ++leg) {
         const real prr_base_point_x = params->prr_base_point[leg][0];
@@ -687,32 +745,31 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         const real uu_2_prr_t = prr_platform_joint_offset_x*prr_platform_joint_offset_x;
         /* (prr-K7) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_prr_t = 1/uu_2_prr_t;
-        /* (prr-G1) size of the leg, the measure of what is near singular */
-        const real size_prr_t = prr_base_point_x*prr_base_point_x +
-            prr_base_point_y*prr_base_point_y;
-        const real size_prr_t_2 = prr_platform_point_y*prr_platform_point_y;
-        const real size_prr_t_3 = prr_platform_point_x*prr_platform_point_x + size_prr_t_2;
-        const real size_prr = root(size_prr_t + size_prr_t_3 + uu_2_prr_t);
-        /* (prr-G3) connection point to the centre of mass of link 2 */
+        /* (prr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_prr_t = R(4.58151643161e-07) + uu_2_prr_t;
+        const real size_prr = root(size_prr_t);
+        /* (prr-G4) connection point to the centre of mass of link 2 */
         const real rho_tip_2_prr_x = prr_link2_centre_of_mass_x - prr_platform_joint_offset_x;
-        /* (prr-G5) inertia tensor of link 2 about the connection point */
+        /* (prr-G6) inertia tensor of link 2 about the connection point */
         const real J_2_prr_t = prr_link2_centre_of_mass_y*prr_link2_centre_of_mass_y +
             rho_tip_2_prr_x*rho_tip_2_prr_x;
         const real J_2_prr_zz = prr_link2_inertia_zz + J_2_prr_t*prr_link2_mass;
-        /* (prr-G4) first moment of link 2 about the connection point */
+        /* (prr-G5) first moment of link 2 about the connection point */
         const real h_2_prr_x = prr_link2_mass*rho_tip_2_prr_x;
         const real h_2_prr_y = prr_link2_centre_of_mass_y*prr_link2_mass;
         /* (L2) first moment about the platform origin */
         const real h_star_t_7 = prr_link2_mass*prr_platform_point_x;
         const real h_star_t_8 = prr_link2_mass*prr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_9 = prr_link2_mass*size_prr_t_2;
-        const real J_star_t_10 = prr_link2_mass*size_prr_t_3;
+        const real J_star_t_13 = prr_platform_point_y*prr_platform_point_y;
+        const real J_star_t_14 = J_star_t_13 + prr_platform_point_x*prr_platform_point_x;
+        const real J_star_t_15 = J_star_t_13*prr_link2_mass;
+        const real J_star_t_16 = J_star_t_14*prr_link2_mass;
         /* (prr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x = gravity_x*prr_base_frame_xx + gravity_y*prr_base_frame_yx;
         const real g_r0_y = gravity_x*prr_base_frame_xy + gravity_y*prr_base_frame_yy;
-        /* (prr-G2) first moment of link 1 about the origin of link 1 */
+        /* (prr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_prr_x = prr_link1_centre_of_mass_x*prr_link1_mass;
         const real h_1_prr_y = prr_link1_centre_of_mass_y*prr_link1_mass;
         /* (V1) potential energy */
@@ -720,6 +777,8 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
             prr_base_frame_yx*prr_base_point_y;
         const real potential_t = prr_link1_mass*(prr_base_frame_xy*prr_base_point_x +
             prr_base_frame_yy*prr_base_point_y);
+        /* (prr-V3) reciprocal vector 1 */
+        const real inv_size_prr = 1/size_prr;
         model->J_2_prr_zz[leg] = J_2_prr_zz;
         model->b_prr_r0_x[leg] = b_prr_r0_x;
         model->branch_1_prr[leg] = branch_1_prr;
@@ -729,6 +788,7 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         model->h_1_prr_y[leg] = h_1_prr_y;
         model->h_2_prr_x[leg] = h_2_prr_x;
         model->h_2_prr_y[leg] = h_2_prr_y;
+        model->inv_size_prr[leg] = inv_size_prr;
         model->inv_uu_2_prr_t[leg] = inv_uu_2_prr_t;
         model->potential_t[leg] = potential_t;
         model->prr_base_frame_xx[leg] = prr_base_frame_xx;
@@ -747,8 +807,11 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
         total_prr += prr_link2_mass;
         total_prr_x += h_star_t_7;
         total_prr_y += h_star_t_8;
-        total_prr_xx += J_star_t_9;
-        total_prr_zz += J_star_t_10;
+        total_prr_xx += J_star_t_15;
+        total_prr_zz += J_star_t_16;
+        total_prr_x_2 += prr_platform_point_x;
+        total_prr_y_2 += prr_platform_point_y;
+        total_prr_2 += size_prr_t;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_prr + total_rpr + total_rrr;
@@ -759,17 +822,28 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
     const real J_star_xx = J_star_t_3 + total_prr_xx + total_rpr_xx + total_rrr_xx;
     const real J_star_zz = J_star_t_4 + platform_inertia_zz + total_prr_zz + total_rpr_zz +
         total_rrr_zz;
-    const real J_star_t_11 = J_star_xx - J_star_zz;
-    const real J_star_t_12 = J_star_t_11 - J_star_xx;
+    const real J_star_t_17 = J_star_xx - J_star_zz;
+    const real J_star_t_18 = J_star_t_17 - J_star_xx;
     /* (M4) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
-    model->J_star_t_12 = J_star_t_12;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_prr_x_2 +
+        R(0.3333333333333333)*total_rpr_x_2 + R(0.3333333333333333)*total_rrr_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_prr_y_2 +
+        R(0.3333333333333333)*total_rpr_y_2 + R(0.3333333333333333)*total_rrr_y_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = root(R(0.12813333333333332) + R(0.3333333333333333)*total_prr_2 +
+        R(0.3333333333333333)*total_rrr_2);
+    model->J_star_t_18 = J_star_t_18;
     model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return PLANAR_MIXED_OK;
 }
@@ -779,6 +853,9 @@ int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -788,23 +865,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -812,6 +886,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -840,47 +915,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -901,7 +979,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -978,9 +1056,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -1015,8 +1095,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -1188,8 +1268,6 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const 
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -1281,8 +1359,8 @@ INLINE void dynamics_legs_rpr(const prepared *m, size_t leg, size_t legs, const 
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = H_a_2_rpr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -1745,7 +1823,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real total_prr_x = s->sum[24][k];
         const real total_prr_y = s->sum[25][k];
         const real total_prr_z = s->sum[26][k];
-        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_t_18 = m->J_star_t_18;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
         const real M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx;
@@ -1755,7 +1833,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz;
         const real M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prr_zz - J_star_t_12 - total_rpr_zz - total_rrr_zz;
+        const real M_aa_zz = total_prr_zz - J_star_t_18 - total_rpr_zz - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_prr_x + total_rpr_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_prr_y + total_rpr_y + total_rrr_y;
@@ -1933,8 +2011,6 @@ INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_value
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -1977,8 +2053,8 @@ INLINE void M_legs_rpr(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[3][k] = add ? o->sum[3][k] + M_ta_t : M_ta_t;  /* total_rpr_xz */
         o->sum[4][k] = add ? o->sum[4][k] + M_ta_t_2 : M_ta_t_2;  /* total_rpr_yz */
         o->sum[5][k] = add ? o->sum[5][k] + M_aa_t : M_aa_t;  /* total_rpr_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -2256,7 +2332,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_prr_xz = s->sum[15][k];
         const real total_prr_yz = s->sum[16][k];
         const real total_prr_zz = s->sum[17][k];
-        const real J_star_t_12 = m->J_star_t_12;
+        const real J_star_t_18 = m->J_star_t_18;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
         const real M_tt_xx = m_star + total_prr_xx - total_rpr_xx - total_rrr_xx;
@@ -2266,7 +2342,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real M_ta_xz = total_rpr_xz + total_rrr_xz - h_star_in_base_y - total_prr_xz;
         const real M_ta_yz = h_star_in_base_x - total_prr_yz - total_rpr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = total_prr_zz - J_star_t_12 - total_rpr_zz - total_rrr_zz;
+        const real M_aa_zz = total_prr_zz - J_star_t_18 - total_rpr_zz - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[3*w + k] = M_tt_xy;
@@ -2458,8 +2534,6 @@ INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -2521,8 +2595,8 @@ INLINE void Z_legs_rpr(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[0][k] = add ? o->sum[0][k] + U_rpr_in_base_x : U_rpr_in_base_x;  /* total_rpr_x */
         o->sum[1][k] = add ? o->sum[1][k] + U_rpr_in_base_y : U_rpr_in_base_y;  /* total_rpr_y */
         o->sum[2][k] = add ? o->sum[2][k] + Z_a_t : Z_a_t;  /* total_rpr_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -2998,8 +3072,6 @@ INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_value
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -3022,8 +3094,8 @@ INLINE void H_legs_rpr(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = H_a_2_rpr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -3373,8 +3445,6 @@ INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const 
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -3443,8 +3513,8 @@ INLINE void required_legs_rpr(const prepared *m, size_t leg, size_t legs, const 
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = H_a_2_rpr_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -3945,8 +4015,6 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t le
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
             R_yx*rpr_platform_point_y;
@@ -3966,8 +4034,8 @@ INLINE void inverse_kinematics_legs_rpr(const prepared *m, size_t leg, size_t le
         const real q_1_rpr = angle(inv_root_1_rpr*py_1_rpr, inv_root_1_rpr*px_1_rpr);
         o->entry[0][k] = q_1_rpr;
         o->entry[1][k] = root_1_rpr;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -4235,8 +4303,6 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, con
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -4262,8 +4328,8 @@ INLINE void joint_rates_legs_rpr(const prepared *m, size_t leg, size_t legs, con
         const real qd_1_rpr = inv_root_1_rpr*(S_dot_rpr_y*axis_x_x - S_dot_rpr_x*axis_x_y);
         o->entry[0][k] = qd_1_rpr;
         o->entry[1][k] = S_dot_rpr_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -4587,8 +4653,6 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t l
         const real rpr_base_point_y = m->rpr_base_point_y[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -4629,8 +4693,8 @@ INLINE void joint_accelerations_legs_rpr(const prepared *m, size_t leg, size_t l
         const real qdd_1_rpr = inv_root_1_rpr*rel_rpr_y;
         o->entry[0][k] = qdd_1_rpr;
         o->entry[1][k] = rel_rpr_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -5020,8 +5084,6 @@ INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs
         const real rpr_link2_mass = m->rpr_link2_mass[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
         const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
@@ -5086,8 +5148,8 @@ INLINE void legs_legs_rpr(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[1][k] = c_true_rpr_in_base_y;
         o->entry[2][k] = axis_x_x;
         o->entry[3][k] = axis_x_y;
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -5546,8 +5608,6 @@ INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const
         const real rpr_link1_mass = m->rpr_link1_mass[i];
         const real rpr_platform_point_x = m->rpr_platform_point_x[i];
         const real rpr_platform_point_y = m->rpr_platform_point_y[i];
-        const real size_rpr = m->size_rpr[i];
-        const real size_rpr_t_4 = m->size_rpr_t_4[i];
         /* (rpr-K1) from the base point to the connection point */
         const real S_rpr_x = t_x + R_xx*rpr_platform_point_x - rpr_base_point_x -
             R_yx*rpr_platform_point_y;
@@ -5573,8 +5633,8 @@ INLINE void potential_legs_rpr(const prepared *m, size_t leg, size_t legs, const
             g_r0_x_3*s_1_rpr)*(h_1_rpr_y + h_2_rpr_y + rpr_link1_mass*(b_rpr_r0_y*c_1_rpr -
             b_rpr_r0_x*s_1_rpr));
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_4 : potential_t_4;  /* total_rpr */
-        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*size_rpr_t_4) +
-            UNLESS(magnitude(root_1_rpr) > TOLERANCE*size_rpr);
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
     }
 }
 
@@ -5833,6 +5893,416 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_after(w, s, potential);
 }
 
+/* ---- condition: 106 mul, 67 add, 4 div, 6 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], sum[3][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[4][8], singular[8];
+} condition_results_rpr;
+typedef struct {
+    real sum[1][8], entry[5][8], unreachable[8], singular[8];
+} condition_results_rrr;
+typedef struct {
+    real sum[1][8], entry[5][8], unreachable[8], singular[8];
+} condition_results_prr;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        lengths[1*w + k] = legs_size;
+    }
+}
+
+INLINE void condition_legs_rpr(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rpr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real branch_1_rpr = m->branch_1_rpr[i];
+        const real rpr_base_frame_xx = m->rpr_base_frame_xx[i];
+        const real rpr_base_frame_xy = m->rpr_base_frame_xy[i];
+        const real rpr_base_frame_yx = m->rpr_base_frame_yx[i];
+        const real rpr_base_frame_yy = m->rpr_base_frame_yy[i];
+        const real rpr_base_point_x = m->rpr_base_point_x[i];
+        const real rpr_base_point_y = m->rpr_base_point_y[i];
+        const real rpr_platform_point_x = m->rpr_platform_point_x[i];
+        const real rpr_platform_point_y = m->rpr_platform_point_y[i];
+        /* (rpr-K1) from the base point to the connection point */
+        const real q_rpr_in_base_x = R_xx*rpr_platform_point_x - R_yx*rpr_platform_point_y;
+        const real q_rpr_in_base_y = R_xx*rpr_platform_point_y + R_yx*rpr_platform_point_x;
+        const real S_rpr_x = q_rpr_in_base_x + t_x - rpr_base_point_x;
+        const real S_rpr_y = q_rpr_in_base_y + t_y - rpr_base_point_y;
+        /* (rpr-K2) component along the reference direction */
+        const real px_1_rpr = S_rpr_x*rpr_base_frame_xx + S_rpr_y*rpr_base_frame_yx;
+        /* (rpr-K3) component across the reference direction */
+        const real py_1_rpr = S_rpr_x*rpr_base_frame_xy + S_rpr_y*rpr_base_frame_yy;
+        /* (rpr-K5) squared amplitude */
+        const real rho2_1_rpr = px_1_rpr*px_1_rpr + py_1_rpr*py_1_rpr;
+        /* (rpr-K6) amplitude, with the sign of the branch */
+        const real root_1_rpr = branch_1_rpr*root(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real inv_root_1_rpr = 1/root_1_rpr;
+        const real axis_x_x = S_rpr_x*inv_root_1_rpr;
+        const real axis_x_y = S_rpr_y*inv_root_1_rpr;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_2_rpr_z = axis_x_y*q_rpr_in_base_x - axis_x_x*q_rpr_in_base_y;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_4 = b_c_x - rpr_platform_point_x;
+        const real spread_t_5 = b_c_y - rpr_platform_point_y;
+        const real spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5;
+        /* (rpr-K5) squared amplitude */
+        const real pivot_size = magnitude(rho2_1_rpr);
+        /* (rpr-V4) reciprocal vector 1 */
+        const real pivot_size_2 = magnitude(root_1_rpr);
+        /* (rpr-N18) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(R(1.6129032258064515)*root(pivot_size),
+            R(1.6129032258064517)*pivot_size_2);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_6 : spread_t_6;  /* total_rpr */
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->entry[2][k] = H_a_2_rpr_z;
+        o->entry[3][k] = least_pivots;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rpr) > TOLERANCE*TOLERANCE*R(0.3844)) +
+            UNLESS(magnitude(root_1_rpr) > TOLERANCE*R(0.62));
+    }
+}
+
+INLINE void condition_place_rpr(size_t w, const condition_results_rpr *o, size_t first, real *H,
+    real *pivots, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(0)*w + k] = o->entry[0][first + k];
+        H[(3)*w + k] = o->entry[1][first + k];
+        H[(6)*w + k] = o->entry[2][first + k];
+        pivots[(0)*w + k] = o->entry[3][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
+        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
+        const real branch_1_rrr = m->branch_1_rrr[i];
+        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
+        const real inv_rho2_1_rrr_t_4 = m->inv_rho2_1_rrr_t_4[i];
+        const real inv_size_rrr = m->inv_size_rrr[i];
+        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
+        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real size_rrr = m->size_rrr[i];
+        /* (rrr-K1) from the base point to the connection point */
+        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
+        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
+        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
+        /* (rrr-K3) component along the reference direction */
+        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
+        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
+        /* (rrr-K4) component across the reference direction */
+        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
+        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
+        /* (rrr-K8) squared amplitude */
+        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
+        /* (rrr-K9) discriminant */
+        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
+        /* (rrr-K10) root, with the sign of the branch */
+        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
+        /* (rrr-K16) from the origin of joint 2 to the connection point */
+        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
+        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
+        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
+        const real s_2_rrr =
+            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
+        /* (rrr-V2) from joint 1 to the connection point, along the links */
+        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr;
+        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
+        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
+        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
+        /* (rrr-V5) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
+        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
+        const real w_1_rrr_t = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
+        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_7 = b_c_x - rrr_platform_point_x;
+        const real spread_t_8 = b_c_y - rrr_platform_point_y;
+        const real spread_t_9 = spread_t_7*spread_t_7 + spread_t_8*spread_t_8;
+        /* (rrr-K8) squared amplitude */
+        const real pivot_size_3 = magnitude(rho2_1_rrr);
+        /* (rrr-V5) reciprocal vector 1 */
+        const real pivot_size_4 = magnitude(r_1_rrr_r0_y);
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots_2 = lesser(root(inv_rho2_1_rrr_t_4*pivot_size_3),
+            inv_size_rrr*pivot_size_4);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_9 : spread_t_9;  /* total_rrr */
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
+        o->entry[2][k] = H_a_1_rrr_z;
+        o->entry[3][k] = least_pivots_2;
+        o->entry[4][k] = disc_1_rrr;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+    }
+}
+
+INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t first, real *H,
+    real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(1)*w + k] = o->entry[0][first + k];
+        H[(4)*w + k] = o->entry[1][first + k];
+        H[(7)*w + k] = o->entry[2][first + k];
+        pivots[(1)*w + k] = o->entry[3][first + k];
+        reach[(1)*w + k] = o->entry[4][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_legs_prr(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_prr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real branch_1_prr = m->branch_1_prr[i];
+        const real inv_size_prr = m->inv_size_prr[i];
+        const real inv_uu_2_prr_t = m->inv_uu_2_prr_t[i];
+        const real prr_base_frame_xx = m->prr_base_frame_xx[i];
+        const real prr_base_frame_xy = m->prr_base_frame_xy[i];
+        const real prr_base_frame_yx = m->prr_base_frame_yx[i];
+        const real prr_base_frame_yy = m->prr_base_frame_yy[i];
+        const real prr_base_point_x = m->prr_base_point_x[i];
+        const real prr_base_point_y = m->prr_base_point_y[i];
+        const real prr_platform_joint_offset_x = m->prr_platform_joint_offset_x[i];
+        const real prr_platform_point_x = m->prr_platform_point_x[i];
+        const real prr_platform_point_y = m->prr_platform_point_y[i];
+        const real size_prr = m->size_prr[i];
+        const real uu_2_prr_t = m->uu_2_prr_t[i];
+        /* (prr-K1) from the base point to the connection point */
+        const real q_prr_in_base_x = R_xx*prr_platform_point_x - R_yx*prr_platform_point_y;
+        const real q_prr_in_base_y = R_xx*prr_platform_point_y + R_yx*prr_platform_point_x;
+        const real S_prr_x = q_prr_in_base_x + t_x - prr_base_point_x;
+        const real S_prr_y = q_prr_in_base_y + t_y - prr_base_point_y;
+        /* (prr-K2) component along axis 1 */
+        const real px_1_prr = S_prr_x*prr_base_frame_xx + S_prr_y*prr_base_frame_yx;
+        /* (prr-K3) discriminant of the distance equation */
+        const real disc_1_prr_t = S_prr_x*S_prr_x + S_prr_y*S_prr_y;
+        const real disc_1_prr = px_1_prr*px_1_prr + uu_2_prr_t - disc_1_prr_t;
+        /* (prr-K7) cosine of the angle of joint 2 from its reference direction */
+        const real c_2_prr =
+            branch_1_prr*root(disc_1_prr)*inv_uu_2_prr_t*prr_platform_joint_offset_x;
+        /* (prr-K8) sine of the angle of joint 2 from its reference direction */
+        const real s_2_prr = inv_uu_2_prr_t*prr_platform_joint_offset_x*(S_prr_x*prr_base_frame_xy
+            + S_prr_y*prr_base_frame_yy);
+        /* (prr-V3) reciprocal vector 1 */
+        const real axis_y_prr_axes2_in_base_x = -c_2_prr*prr_base_frame_xy -
+            prr_base_frame_xx*s_2_prr;
+        const real axis_y_prr_axes2_in_base_y = -c_2_prr*prr_base_frame_yy -
+            prr_base_frame_yx*s_2_prr;
+        /* (prr-V2) velocity of the connection point per rate of joint 2 */
+        const real v_2_prr_t = c_2_prr*prr_platform_joint_offset_x;
+        /* (prr-V3) reciprocal vector 1 */
+        const real w_1_prr_t = prr_platform_joint_offset_x*s_2_prr/v_2_prr_t;
+        const real _r0_x = -c_2_prr - s_2_prr*w_1_prr_t;
+        const real _r0_y = c_2_prr*w_1_prr_t - s_2_prr;
+        const real w_1_prr_in_base_x = _r0_x*axis_y_prr_axes2_in_base_y +
+            _r0_y*axis_y_prr_axes2_in_base_x;
+        const real w_1_prr_in_base_y = _r0_y*axis_y_prr_axes2_in_base_y -
+            _r0_x*axis_y_prr_axes2_in_base_x;
+        /* (M10) moment of the column's unit force about the platform origin */
+        const real H_a_1_prr_z = q_prr_in_base_x*w_1_prr_in_base_y -
+            q_prr_in_base_y*w_1_prr_in_base_x;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t = b_c_x - prr_platform_point_x;
+        const real spread_t_2 = b_c_y - prr_platform_point_y;
+        const real spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2;
+        /* (prr-V3) reciprocal vector 1 */
+        const real pivot_size_5 = magnitude(v_2_prr_t);
+        const real pivot_ = inv_size_prr*pivot_size_5;
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_3 : spread_t_3;  /* total_prr */
+        o->entry[0][k] = w_1_prr_in_base_x;
+        o->entry[1][k] = w_1_prr_in_base_y;
+        o->entry[2][k] = H_a_1_prr_z;
+        o->entry[3][k] = pivot_;
+        o->entry[4][k] = disc_1_prr;
+        o->unreachable[k] = UNLESS(disc_1_prr >= 0);
+        o->singular[k] = UNLESS(magnitude(-v_2_prr_t) > TOLERANCE*size_prr);
+    }
+}
+
+INLINE void condition_place_prr(size_t w, const condition_results_prr *o, size_t first, real *H,
+    real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(2)*w + k] = o->entry[0][first + k];
+        H[(5)*w + k] = o->entry[1][first + k];
+        H[(8)*w + k] = o->entry[2][first + k];
+        pivots[(2)*w + k] = o->entry[3][first + k];
+        reach[(2)*w + k] = o->entry[4][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rpr = s->sum[0][k];
+        const real total_rrr = s->sum[1][k];
+        const real total_prr = s->sum[2][k];
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = root(R(0.3333333333333333)*total_prr +
+            R(0.3333333333333333)*total_rpr + R(0.3333333333333333)*total_rrr);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_rpr results_rpr;
+    condition_results_rrr results_rrr;
+    condition_results_prr results_prr;
+    clear(reach, 3*w);
+    condition_before(m, w, X, s, lengths);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rpr(m, 0, 1, s, 0, 1, 0, &results_rpr);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_place_rpr(w, &results_rpr, leg, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rpr.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rpr.sum, 0, sizeof results_rpr.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_legs_rpr(m, leg, 0, s, 1, w, 1, &results_rpr);
+            condition_place_rpr(w, &results_rpr, 0, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rpr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rrr(m, 0, 1, s, 0, 1, 0, &results_rrr);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_place_rrr(w, &results_rrr, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrr.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
+            condition_place_rrr(w, &results_rrr, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_prr(m, 0, 1, s, 0, 1, 0, &results_prr);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_place_prr(w, &results_prr, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[2 + n][k] = total(results_prr.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_prr.sum, 0, sizeof results_prr.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_legs_prr(m, leg, 0, s, 1, w, 1, &results_prr);
+            condition_place_prr(w, &results_prr, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[2 + n][k] = results_prr.sum[n][k];
+            }
+        }
+    }
+    condition_after(w, s, lengths);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -5910,12 +6380,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int planar_mixed_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 3, 1, &code, completed);
     return code;
 }
@@ -5966,12 +6437,16 @@ int planar_mixed_energy(const prepared *m, const real *X, const real *V, real *k
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {1, 2, 4};
     real q[6];
     int code = planar_mixed_inverse_kinematics(m, X, q);
+    if (code != PLANAR_MIXED_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -5989,8 +6464,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[9];
     int code = planar_mixed_H(m, X, H);
-    fill_rows(3, H, gap, a);
     if (code == PLANAR_MIXED_OK) {
+        fill_rows(3, H, gap, a);
         least_squares(3, 3, a, step);
     }
     return code;
@@ -5999,7 +6474,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 3 };
-    real found[3], gap[GAPS], trial[3], next[GAPS], step[3];
+    real found[3], gap[GAPS] = {0}, trial[3] = {0}, next[GAPS] = {0}, step[3] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : PLANAR_MIXED_INVALID;
@@ -6028,6 +6503,104 @@ int planar_mixed_forward_kinematics(const prepared *m, const real *q_actuated, c
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    static const size_t moments[] = {2};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(3, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 1; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            H[moments[i]*3 + j] /= length;
+        }
+    }
+    check(9, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int planar_mixed_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[9], a[9], found[3], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != PLANAR_MIXED_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(3, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int planar_mixed_rotation(const real *X, real *R)
 {
     const int code = all_finite(X, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
@@ -6042,7 +6615,9 @@ int planar_mixed_pose(const real *t, const real *R, real *X)
     found[0] = t[0];
     found[1] = t[1];
     found[2] = angle(R[2], R[0]);
-    const int code = all_finite(R, 4) && all_finite(found, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
+    const int turns = magnitude(R[0]*R[0] + R[1]*R[1] - 1) <= ROUNDED && magnitude(R[2]*R[2] + R[3]*R[3] - 1) <= ROUNDED
+        && magnitude(R[0]*R[2] + R[1]*R[3]) <= ROUNDED && R[0]*R[3] - R[1]*R[2] > 0;
+    const int code = turns && all_finite(found, 3) ? PLANAR_MIXED_OK : PLANAR_MIXED_INVALID;
     deliver(found, 3, 1, &code, X);
     return code;
 }
@@ -6071,6 +6646,11 @@ size_t planar_mixed_M_batch(const planar_mixed_model *model, size_t n, const pla
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_M(model, X + 3*(i + k), M + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6095,6 +6675,11 @@ size_t planar_mixed_Z_batch(const planar_mixed_model *model, size_t n, const pla
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6119,6 +6704,11 @@ size_t planar_mixed_H_batch(const planar_mixed_model *model, size_t n, const pla
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_H(model, X + 3*(i + k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6144,6 +6734,12 @@ size_t planar_mixed_dynamics_batch(const planar_mixed_model *model, size_t n, co
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
+                    k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6168,6 +6764,11 @@ size_t planar_mixed_inverse_kinematics_batch(const planar_mixed_model *model, si
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 3*i, q + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_inverse_kinematics(model, X + 3*(i + k), q + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6192,6 +6793,11 @@ size_t planar_mixed_joint_rates_batch(const planar_mixed_model *model, size_t n,
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6217,6 +6823,12 @@ size_t planar_mixed_joint_accelerations_batch(const planar_mixed_model *model, s
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    accelerations + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6245,6 +6857,12 @@ size_t planar_mixed_inverse_dynamics_batch(const planar_mixed_model *model, size
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6273,6 +6891,12 @@ size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_MIXED_OK) {
+                codes[k] = planar_mixed_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6284,13 +6908,13 @@ size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size
 }
 
 size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
-    planar_mixed_real *completed, int *status)
+    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
+    planar_mixed_real *wrench, planar_mixed_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = planar_mixed_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, completed +
-            3*i);
+        const int code = planar_mixed_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ?
+            wrench + 3*i : NULL, completed + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6327,6 +6951,17 @@ size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, si
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = planar_mixed_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_mixed_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask planar_mixed_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so planar_mixed.c refuses them unless PLANAR_MIXED_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as PLANAR_MIXED_OK.
  */
 #ifndef PLANAR_MIXED_H_INCLUDED
 #define PLANAR_MIXED_H_INCLUDED
@@ -125,40 +131,42 @@ typedef struct {
 
 /* What depends on the parameters alone; set by planar_mixed_prepare, then only read. */
 typedef struct {
-    planar_mixed_real J_star_t_12, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x,
-            h_star_y, m_star;
+    planar_mixed_real J_star_t_18, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, legs_size, m_star;
     /* legs of type rpr */
     planar_mixed_real J_group_1_rpr_zz[1], b_rpr_r0_x[1], b_rpr_r0_y[1], branch_1_rpr[1], g_r0_x_3[1],
             g_r0_y_3[1], h_1_rpr_x[1], h_1_rpr_y[1], h_2_rpr_x[1], h_2_rpr_y[1], rpr_base_frame_xx[1],
             rpr_base_frame_xy[1], rpr_base_frame_yx[1], rpr_base_frame_yy[1], rpr_base_point_x[1],
             rpr_base_point_y[1], rpr_link1_mass[1], rpr_link2_mass[1], rpr_platform_point_x[1],
-            rpr_platform_point_y[1], size_rpr[1], size_rpr_t_4[1];
+            rpr_platform_point_y[1];
     /* legs of type rrr */
     planar_mixed_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
             b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1], d_Gamma_1_rrr_y[1],
             d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x_2[1], g_r0_y_2[1], h_1_rrr_x[1], h_1_rrr_y[1],
-            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rrr_platform_joint_offset_x[1],
-            inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
-            rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
-            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
-            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
-            size_rrr[1];
+            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rho2_1_rrr_t_4[1],
+            inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
+            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
+            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
+            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
+            rrr_platform_point_y[1], size_rrr[1];
     /* legs of type prr */
     planar_mixed_real J_2_prr_zz[1], b_prr_r0_x[1], branch_1_prr[1], g_r0_x[1], g_r0_y[1],
-            h_1_prr_x[1], h_1_prr_y[1], h_2_prr_x[1], h_2_prr_y[1], inv_uu_2_prr_t[1], potential_t[1],
-            prr_base_frame_xx[1], prr_base_frame_xy[1], prr_base_frame_yx[1], prr_base_frame_yy[1],
-            prr_base_point_x[1], prr_base_point_y[1], prr_link1_mass[1], prr_link2_mass[1],
-            prr_platform_joint_offset_x[1], prr_platform_point_x[1], prr_platform_point_y[1],
-            size_prr[1], uu_2_prr_t[1];
+            h_1_prr_x[1], h_1_prr_y[1], h_2_prr_x[1], h_2_prr_y[1], inv_size_prr[1],
+            inv_uu_2_prr_t[1], potential_t[1], prr_base_frame_xx[1], prr_base_frame_xy[1],
+            prr_base_frame_yx[1], prr_base_frame_yy[1], prr_base_point_x[1], prr_base_point_y[1],
+            prr_link1_mass[1], prr_link2_mass[1], prr_platform_joint_offset_x[1],
+            prr_platform_point_x[1], prr_platform_point_y[1], size_prr[1], uu_2_prr_t[1];
 } planar_mixed_model;
 
 extern const planar_mixed_params planar_mixed_default_params;
 extern const planar_mixed_real planar_mixed_HOME_X[PLANAR_MIXED_NQ];
 extern const planar_mixed_real planar_mixed_HOME_Q[PLANAR_MIXED_NJ];
 
-/* Prepare a model.  PLANAR_MIXED_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  PLANAR_MIXED_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_mixed_prepare(const planar_mixed_params *params, planar_mixed_model *model);
 
 /* Inertia matrix M. 172 mul, 129 add, 4 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -231,13 +239,14 @@ size_t planar_mixed_forward_dynamics_batch(const planar_mixed_model *model, size
     planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *tau, const
     planar_mixed_real *wrench, planar_mixed_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int planar_mixed_complete_acceleration(const planar_mixed_model *model, const planar_mixed_real
-    *X, const planar_mixed_real *V, const planar_mixed_real *A, planar_mixed_real *completed);
+    *X, const planar_mixed_real *V, const planar_mixed_real *A, const planar_mixed_real *wrench,
+    planar_mixed_real *completed);
 size_t planar_mixed_complete_acceleration_batch(const planar_mixed_model *model, size_t n, const
-    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A,
-    planar_mixed_real *completed, int *status);
+    planar_mixed_real *X, const planar_mixed_real *V, const planar_mixed_real *A, const
+    planar_mixed_real *wrench, planar_mixed_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 230 mul, 143 add, 4 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -264,12 +273,22 @@ int planar_mixed_forward_kinematics(const planar_mixed_model *model, const plana
 size_t planar_mixed_forward_kinematics_batch(const planar_mixed_model *model, size_t n, const
     planar_mixed_real *q_actuated, const planar_mixed_real *X0, planar_mixed_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 106 mul, 67 add, 4 div, 6 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (3). */
+int planar_mixed_condition(const planar_mixed_model *model, const planar_mixed_real *X,
+    planar_mixed_real *sigma, planar_mixed_real *legs);
+size_t planar_mixed_condition_batch(const planar_mixed_model *model, size_t n, const
+    planar_mixed_real *X, planar_mixed_real *sigma, planar_mixed_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_mixed_rotation(const planar_mixed_real *X, planar_mixed_real *R);
 size_t planar_mixed_rotation_batch(size_t n, const planar_mixed_real *X, planar_mixed_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
 int planar_mixed_pose(const planar_mixed_real *t, const planar_mixed_real *R, planar_mixed_real
     *X);
 size_t planar_mixed_pose_batch(size_t n, const planar_mixed_real *t, const planar_mixed_real *R,

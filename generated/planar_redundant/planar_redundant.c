@@ -3,6 +3,12 @@
 
 #include "planar_redundant.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(PLANAR_REDUNDANT_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define PLANAR_REDUNDANT_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef planar_redundant_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -229,7 +267,17 @@ INLINE int all_about_z(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 9) {
-        ok &= magnitude(x[8] - 1) <= R(1e-6);
+        ok &= magnitude(x[8] - 1) <= SNAPPED;
+    }
+    return ok;
+}
+
+/* izz alone counts in the plane. */
+INLINE int all_planar_inertias(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= x[9*i + 8] >= 0;
     }
     return ok;
 }
@@ -335,70 +383,70 @@ const planar_redundant_real planar_redundant_HOME_Q[PLANAR_REDUNDANT_NJ] = {R(0.
 static int acceptable(const planar_redundant_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
+    ok &= all_within(&p->gravity[0], 3);
     ok &= all_zero(&p->gravity[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
     ok &= all_zero(&p->platform_centre_of_mass[0] + 2, 1, 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->prrr_base_point[0][0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_planar_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->prrr_base_point[0][0], 3);
     ok &= all_zero(&p->prrr_base_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_base_frame[0][0][0], 9);
+    ok &= all_within(&p->prrr_base_frame[0][0][0], 9);
     ok &= all_rotations(&p->prrr_base_frame[0][0][0], 1);
     ok &= all_about_z(&p->prrr_base_frame[0][0][0], 1);
-    ok &= all_finite(&p->prrr_platform_point[0][0], 3);
+    ok &= all_within(&p->prrr_platform_point[0][0], 3);
     ok &= all_zero(&p->prrr_platform_point[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_joint3_offset[0][0], 3);
+    ok &= all_within(&p->prrr_joint3_offset[0][0], 3);
     ok &= all_zero(&p->prrr_joint3_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->prrr_joint3_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_platform_joint_offset[0][0], 3);
+    ok &= all_within(&p->prrr_platform_joint_offset[0][0], 3);
     ok &= all_zero(&p->prrr_platform_joint_offset[0][0] + 1, 1, 3);
     ok &= all_zero(&p->prrr_platform_joint_offset[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_link1_mass[0], 1);
+    ok &= all_within(&p->prrr_link1_mass[0], 1);
     ok &= none_negative(&p->prrr_link1_mass[0], 1);
-    ok &= all_finite(&p->prrr_link1_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->prrr_link1_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->prrr_link1_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_link1_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->prrr_link1_inertia[0][0][0], 1);
-    ok &= all_finite(&p->prrr_link2_mass[0], 1);
+    ok &= all_within(&p->prrr_link1_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->prrr_link1_inertia[0][0][0], 1);
+    ok &= all_within(&p->prrr_link2_mass[0], 1);
     ok &= none_negative(&p->prrr_link2_mass[0], 1);
-    ok &= all_finite(&p->prrr_link2_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->prrr_link2_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->prrr_link2_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_link2_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->prrr_link2_inertia[0][0][0], 1);
-    ok &= all_finite(&p->prrr_link3_mass[0], 1);
+    ok &= all_within(&p->prrr_link2_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->prrr_link2_inertia[0][0][0], 1);
+    ok &= all_within(&p->prrr_link3_mass[0], 1);
     ok &= none_negative(&p->prrr_link3_mass[0], 1);
-    ok &= all_finite(&p->prrr_link3_centre_of_mass[0][0], 3);
+    ok &= all_within(&p->prrr_link3_centre_of_mass[0][0], 3);
     ok &= all_zero(&p->prrr_link3_centre_of_mass[0][0] + 2, 1, 3);
-    ok &= all_finite(&p->prrr_link3_inertia[0][0][0], 9);
-    ok &= all_symmetric(&p->prrr_link3_inertia[0][0][0], 1);
-    ok &= all_finite(&p->rrr_base_point[0][0], 6);
+    ok &= all_within(&p->prrr_link3_inertia[0][0][0], 9);
+    ok &= all_planar_inertias(&p->prrr_link3_inertia[0][0][0], 1);
+    ok &= all_within(&p->rrr_base_point[0][0], 6);
     ok &= all_zero(&p->rrr_base_point[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_base_frame[0][0][0], 18);
+    ok &= all_within(&p->rrr_base_frame[0][0][0], 18);
     ok &= all_rotations(&p->rrr_base_frame[0][0][0], 2);
     ok &= all_about_z(&p->rrr_base_frame[0][0][0], 2);
-    ok &= all_finite(&p->rrr_platform_point[0][0], 6);
+    ok &= all_within(&p->rrr_platform_point[0][0], 6);
     ok &= all_zero(&p->rrr_platform_point[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_joint2_offset[0][0], 6);
+    ok &= all_within(&p->rrr_joint2_offset[0][0], 6);
     ok &= all_zero(&p->rrr_joint2_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrr_joint2_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_platform_joint_offset[0][0], 6);
+    ok &= all_within(&p->rrr_platform_joint_offset[0][0], 6);
     ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 1, 2, 3);
     ok &= all_zero(&p->rrr_platform_joint_offset[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_link1_mass[0], 2);
+    ok &= all_within(&p->rrr_link1_mass[0], 2);
     ok &= none_negative(&p->rrr_link1_mass[0], 2);
-    ok &= all_finite(&p->rrr_link1_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrr_link1_centre_of_mass[0][0], 6);
     ok &= all_zero(&p->rrr_link1_centre_of_mass[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_link1_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrr_link1_inertia[0][0][0], 2);
-    ok &= all_finite(&p->rrr_link2_mass[0], 2);
+    ok &= all_within(&p->rrr_link1_inertia[0][0][0], 18);
+    ok &= all_planar_inertias(&p->rrr_link1_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrr_link2_mass[0], 2);
     ok &= none_negative(&p->rrr_link2_mass[0], 2);
-    ok &= all_finite(&p->rrr_link2_centre_of_mass[0][0], 6);
+    ok &= all_within(&p->rrr_link2_centre_of_mass[0][0], 6);
     ok &= all_zero(&p->rrr_link2_centre_of_mass[0][0] + 2, 2, 3);
-    ok &= all_finite(&p->rrr_link2_inertia[0][0][0], 18);
-    ok &= all_symmetric(&p->rrr_link2_inertia[0][0][0], 2);
+    ok &= all_within(&p->rrr_link2_inertia[0][0][0], 18);
+    ok &= all_planar_inertias(&p->rrr_link2_inertia[0][0][0], 2);
     return ok;
 }
 
@@ -413,11 +461,17 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     real total_prrr_y = 0;
     real total_prrr_xx = 0;
     real total_prrr_zz = 0;
+    real total_prrr_x_2 = 0;
+    real total_prrr_y_2 = 0;
+    real total_prrr_2 = 0;
     real total_rrr = 0;
     real total_rrr_x = 0;
     real total_rrr_y = 0;
     real total_rrr_xx = 0;
     real total_rrr_zz = 0;
+    real total_rrr_x_2 = 0;
+    real total_rrr_y_2 = 0;
+    real total_rrr_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real platform_mass = params->platform_mass;
@@ -465,32 +519,28 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real Kd_2_prrr_t = prrr_joint3_offset_x*prrr_joint3_offset_x;
         const real Kd_2_prrr_t_2 = R(0.5)*Kd_2_prrr_t;
         const real Kd_2_prrr_t_3 = R(0.5)*uu_3_prrr_t;
-        /* (prrr-G1) size of the leg, the measure of what is near singular */
-        const real size_prrr_t = prrr_base_point_x*prrr_base_point_x +
-            prrr_base_point_y*prrr_base_point_y;
-        const real size_prrr_t_2 = prrr_platform_point_y*prrr_platform_point_y;
-        const real size_prrr_t_3 = prrr_platform_point_x*prrr_platform_point_x + size_prrr_t_2;
-        const real size_prrr_t_4 = Kd_2_prrr_t + size_prrr_t + size_prrr_t_3 + uu_3_prrr_t;
-        const real size_prrr = root(size_prrr_t_4);
+        /* (prrr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_prrr_t = R(4.58151643161e-07) + Kd_2_prrr_t + uu_3_prrr_t;
+        const real size_prrr = root(size_prrr_t);
         /* (prrr-K9) squared amplitude */
-        const real rho2_2_prrr_t = size_prrr*size_prrr*size_prrr_t_4;
+        const real rho2_2_prrr_t = size_prrr*size_prrr*size_prrr_t;
         /* (prrr-K16) the vector from joint 2 to the connection point, resolved along link 2 */
         const real inv_Kd_2_prrr_t = 1/Kd_2_prrr_t;
         /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
         const real inv_uu_3_prrr_t = 1/uu_3_prrr_t;
-        /* (prrr-G4) inertia tensor of link 2 about the origin of link 2 */
+        /* (prrr-G5) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_prrr_t = prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
             prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y;
         const real J_2_prrr_zz = prrr_link2_inertia_zz + J_2_prrr_t*prrr_link2_mass;
-        /* (prrr-G5) connection point to the centre of mass of link 3 */
+        /* (prrr-G6) connection point to the centre of mass of link 3 */
         const real rho_tip_3_prrr_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x;
-        /* (prrr-G7) inertia tensor of link 3 about the connection point */
+        /* (prrr-G8) inertia tensor of link 3 about the connection point */
         const real J_3_prrr_t = prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y +
             rho_tip_3_prrr_x*rho_tip_3_prrr_x;
         const real J_3_prrr_zz = prrr_link3_inertia_zz + J_3_prrr_t*prrr_link3_mass;
         /* (prrr-N19) inertia tensor of the links from 2 outwards about joint 2 */
         const real Jc_2_prrr_zz = J_2_prrr_zz + J_3_prrr_zz;
-        /* (prrr-G6) first moment of link 3 about the connection point */
+        /* (prrr-G7) first moment of link 3 about the connection point */
         const real h_3_prrr_x = prrr_link3_mass*rho_tip_3_prrr_x;
         const real h_3_prrr_y = prrr_link3_centre_of_mass_y*prrr_link3_mass;
         /* (prrr-V6) reciprocal vector 2 */
@@ -512,20 +562,22 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real h_star_t_3 = prrr_link3_mass*prrr_platform_point_x;
         const real h_star_t_4 = prrr_link3_mass*prrr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_5 = prrr_link3_mass*size_prrr_t_2;
-        const real J_star_t_6 = prrr_link3_mass*size_prrr_t_3;
+        const real J_star_t_5 = prrr_platform_point_y*prrr_platform_point_y;
+        const real J_star_t_6 = J_star_t_5 + prrr_platform_point_x*prrr_platform_point_x;
+        const real J_star_t_7 = J_star_t_5*prrr_link3_mass;
+        const real J_star_t_8 = J_star_t_6*prrr_link3_mass;
         /* (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2,
            less gravity */
         const real g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy;
         const real g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx;
-        /* (prrr-G3) first moment of link 2 about the origin of link 2 */
+        /* (prrr-G4) first moment of link 2 about the origin of link 2 */
         const real h_2_prrr_x = prrr_link2_centre_of_mass_x*prrr_link2_mass;
         const real h_2_prrr_y = prrr_link2_centre_of_mass_y*prrr_link2_mass;
         /* (prrr-N4) remainder without the acceleration in: inertia force of link 1 less its weight */
         const real f_1_prrr_o_x = g_r0_x*prrr_link1_mass;
         /* (prrr-N24) force that accelerates joint 1, per unit */
         const real P_c1_prrr_t = prrr_link1_mass + prrr_link2_mass;
-        /* (prrr-G2) first moment of link 1 about the origin of link 1 */
+        /* (prrr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_prrr_x = prrr_link1_centre_of_mass_x*prrr_link1_mass;
         const real h_1_prrr_y = prrr_link1_centre_of_mass_y*prrr_link1_mass;
         /* (V1) potential energy */
@@ -535,6 +587,10 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
             prrr_base_frame_yx*prrr_base_point_y;
         const real potential_t = b_prrr_r0_y*prrr_link1_mass;
         const real potential_t_2 = b_prrr_r0_y*prrr_link2_mass;
+        /* (prrr-K9) squared amplitude */
+        const real inv_rho2_2_prrr_t_4 = 1/rho2_2_prrr_t;
+        /* (prrr-V5) reciprocal vector 1 */
+        const real inv_size_prrr = 1/size_prrr;
         model->J_2_prrr_zz[leg] = J_2_prrr_zz;
         model->J_3_prrr_zz[leg] = J_3_prrr_zz;
         model->Jc_2_prrr_zz[leg] = Jc_2_prrr_zz;
@@ -559,6 +615,8 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->h_3_prrr_y[leg] = h_3_prrr_y;
         model->inv_Kd_2_prrr_t[leg] = inv_Kd_2_prrr_t;
         model->inv_prrr_platform_joint_offset_x[leg] = inv_prrr_platform_joint_offset_x;
+        model->inv_rho2_2_prrr_t_4[leg] = inv_rho2_2_prrr_t_4;
+        model->inv_size_prrr[leg] = inv_size_prrr;
         model->inv_uu_3_prrr_t[leg] = inv_uu_3_prrr_t;
         model->potential_t[leg] = potential_t;
         model->potential_t_2[leg] = potential_t_2;
@@ -580,8 +638,11 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         total_prrr += prrr_link3_mass;
         total_prrr_x += h_star_t_3;
         total_prrr_y += h_star_t_4;
-        total_prrr_xx += J_star_t_5;
-        total_prrr_zz += J_star_t_6;
+        total_prrr_xx += J_star_t_7;
+        total_prrr_zz += J_star_t_8;
+        total_prrr_x_2 += prrr_platform_point_x;
+        total_prrr_y_2 += prrr_platform_point_y;
+        total_prrr_2 += size_prrr_t;
     }
     for (size_t leg = 0; leg < 2; ++leg) {
         const real rrr_base_point_x = params->rrr_base_point[leg][0];
@@ -611,32 +672,28 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x;
         const real Kd_1_rrr_t_2 = R(0.5)*Kd_1_rrr_t;
         const real Kd_1_rrr_t_3 = R(0.5)*uu_2_rrr_t;
-        /* (rrr-G1) size of the leg, the measure of what is near singular */
-        const real size_rrr_t = rrr_base_point_x*rrr_base_point_x +
-            rrr_base_point_y*rrr_base_point_y;
-        const real size_rrr_t_2 = rrr_platform_point_y*rrr_platform_point_y;
-        const real size_rrr_t_3 = rrr_platform_point_x*rrr_platform_point_x + size_rrr_t_2;
-        const real size_rrr_t_4 = Kd_1_rrr_t + size_rrr_t + size_rrr_t_3 + uu_2_rrr_t;
-        const real size_rrr = root(size_rrr_t_4);
+        /* (rrr-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_rrr_t = R(4.58151643161e-07) + Kd_1_rrr_t + uu_2_rrr_t;
+        const real size_rrr = root(size_rrr_t);
         /* (rrr-K8) squared amplitude */
-        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t_4;
+        const real rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t;
         /* (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1 */
         const real inv_Kd_1_rrr_t_5 = 1/Kd_1_rrr_t;
         /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
         const real inv_uu_2_rrr_t = 1/uu_2_rrr_t;
-        /* (rrr-G3) inertia tensor of link 1 about the origin of link 1 */
+        /* (rrr-G4) inertia tensor of link 1 about the origin of link 1 */
         const real J_1_rrr_t = rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
             rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y;
         const real J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass;
-        /* (rrr-G4) connection point to the centre of mass of link 2 */
+        /* (rrr-G5) connection point to the centre of mass of link 2 */
         const real rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x;
-        /* (rrr-G6) inertia tensor of link 2 about the connection point */
+        /* (rrr-G7) inertia tensor of link 2 about the connection point */
         const real J_2_rrr_t = rho_tip_2_rrr_x*rho_tip_2_rrr_x +
             rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y;
         const real J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass;
         /* (rrr-N11) inertia tensor of the links from 1 outwards about joint 1 */
         const real Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz;
-        /* (rrr-G5) first moment of link 2 about the connection point */
+        /* (rrr-G6) first moment of link 2 about the connection point */
         const real h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass;
         const real h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass;
         /* (rrr-V6) reciprocal vector 2 */
@@ -656,13 +713,15 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         const real h_star_t_5 = rrr_link2_mass*rrr_platform_point_x;
         const real h_star_t_6 = rrr_link2_mass*rrr_platform_point_y;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_7 = rrr_link2_mass*size_rrr_t_2;
-        const real J_star_t_8 = rrr_link2_mass*size_rrr_t_3;
+        const real J_star_t_9 = rrr_platform_point_y*rrr_platform_point_y;
+        const real J_star_t_10 = J_star_t_9 + rrr_platform_point_x*rrr_platform_point_x;
+        const real J_star_t_11 = J_star_t_9*rrr_link2_mass;
+        const real J_star_t_12 = J_star_t_10*rrr_link2_mass;
         /* (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1,
            less gravity */
         const real g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx;
         const real g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy;
-        /* (rrr-G2) first moment of link 1 about the origin of link 1 */
+        /* (rrr-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass;
         const real h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass;
         /* (V1) potential energy */
@@ -670,6 +729,10 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
             rrr_base_frame_yx*rrr_base_point_y;
         const real b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x +
             rrr_base_frame_yy*rrr_base_point_y;
+        /* (rrr-K8) squared amplitude */
+        const real inv_rho2_1_rrr_t_4 = 1/rho2_1_rrr_t;
+        /* (rrr-V5) reciprocal vector 1 */
+        const real inv_size_rrr = 1/size_rrr;
         model->J_1_rrr_zz[leg] = J_1_rrr_zz;
         model->J_2_rrr_zz[leg] = J_2_rrr_zz;
         model->Jc_1_rrr_zz[leg] = Jc_1_rrr_zz;
@@ -689,7 +752,9 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         model->h_2_rrr_x[leg] = h_2_rrr_x;
         model->h_2_rrr_y[leg] = h_2_rrr_y;
         model->inv_Kd_1_rrr_t_5[leg] = inv_Kd_1_rrr_t_5;
+        model->inv_rho2_1_rrr_t_4[leg] = inv_rho2_1_rrr_t_4;
         model->inv_rrr_platform_joint_offset_x[leg] = inv_rrr_platform_joint_offset_x;
+        model->inv_size_rrr[leg] = inv_size_rrr;
         model->inv_uu_2_rrr_t[leg] = inv_uu_2_rrr_t;
         model->rho2_1_rrr_t[leg] = rho2_1_rrr_t;
         model->rrr_base_frame_xx[leg] = rrr_base_frame_xx;
@@ -708,8 +773,11 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
         total_rrr += rrr_link2_mass;
         total_rrr_x += h_star_t_5;
         total_rrr_y += h_star_t_6;
-        total_rrr_xx += J_star_t_7;
-        total_rrr_zz += J_star_t_8;
+        total_rrr_xx += J_star_t_11;
+        total_rrr_zz += J_star_t_12;
+        total_rrr_x_2 += rrr_platform_point_x;
+        total_rrr_y_2 += rrr_platform_point_y;
+        total_rrr_2 += size_rrr_t;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_prrr + total_rrr;
@@ -719,17 +787,28 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
     /* (L3) inertia tensor about the platform origin */
     const real J_star_xx = J_star_t_3 + total_prrr_xx + total_rrr_xx;
     const real J_star_zz = J_star_t_4 + platform_inertia_zz + total_prrr_zz + total_rrr_zz;
-    const real J_star_t_9 = J_star_xx - J_star_zz;
-    const real J_star_t_10 = J_star_t_9 - J_star_xx;
+    const real J_star_t_13 = J_star_xx - J_star_zz;
+    const real J_star_t_14 = J_star_t_13 - J_star_xx;
     /* (M4) centripetal force and weight of the platform */
     const real Z_p_t = gravity_x*m_star;
     const real Z_p_t_2 = gravity_y*m_star;
-    model->J_star_t_10 = J_star_t_10;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_prrr_x_2 +
+        R(0.3333333333333333)*total_rrr_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_prrr_y_2 +
+        R(0.3333333333333333)*total_rrr_y_2;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = root(R(0.3333333333333333)*total_prrr_2 +
+        R(0.3333333333333333)*total_rrr_2);
+    model->J_star_t_14 = J_star_t_14;
     model->J_star_zz = J_star_zz;
     model->Z_p_t = Z_p_t;
     model->Z_p_t_2 = Z_p_t_2;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
+    model->legs_size = legs_size;
     model->m_star = m_star;
     return PLANAR_REDUNDANT_OK;
 }
@@ -739,6 +818,9 @@ int planar_redundant_prepare(const planar_redundant_params *params, planar_redun
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -748,23 +830,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -772,6 +851,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -800,47 +880,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -861,7 +944,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -938,9 +1021,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -975,8 +1060,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -1686,7 +1771,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real total_rrr_x = s->sum[15][k];
         const real total_rrr_y = s->sum[16][k];
         const real total_rrr_z = s->sum[17][k];
-        const real J_star_t_10 = m->J_star_t_10;
+        const real J_star_t_14 = m->J_star_t_14;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
         const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
@@ -1696,7 +1781,7 @@ INLINE void dynamics_after(const prepared *m, size_t w, const dynamics_values *s
         const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz;
+        const real M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz;
         /* (M5) translational part of Z */
         const real Z_t_x = Z_p_x + total_prrr_x + total_rrr_x;
         const real Z_t_y = Z_p_y + total_prrr_y + total_rrr_y;
@@ -2178,7 +2263,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real total_rrr_xz = s->sum[9][k];
         const real total_rrr_yz = s->sum[10][k];
         const real total_rrr_zz = s->sum[11][k];
-        const real J_star_t_10 = m->J_star_t_10;
+        const real J_star_t_14 = m->J_star_t_14;
         const real m_star = m->m_star;
         /* (M1) translational block of M */
         const real M_tt_xx = m_star - total_prrr_xx - total_rrr_xx;
@@ -2188,7 +2273,7 @@ INLINE void M_after(const prepared *m, size_t w, const M_values *s, real *M)
         const real M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y;
         const real M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz;
         /* (M3) rotational block of M */
-        const real M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz;
+        const real M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz;
         M[0*w + k] = M_tt_xx;
         M[1*w + k] = M_tt_xy;
         M[4*w + k] = M_tt_xy;
@@ -5121,7 +5206,7 @@ INLINE void potential_legs_prrr(const prepared *m, size_t w, size_t leg, size_t 
         const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
         /* (V1) potential energy */
         const real potential_t_5 = b_prrr_r0_x + y_1_extra_prrr;
-        /* (prrr-G6) first moment of link 3 about the connection point */
+        /* (prrr-G7) first moment of link 3 about the connection point */
         const real h_3_prrr_r0_x = c_3_prrr*h_3_prrr_x + h_3_prrr_y*s_3_prrr;
         const real h_3_prrr_r0_y = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr;
         /* (V1) potential energy */
@@ -5302,6 +5387,351 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_after(w, s, potential);
 }
 
+/* ---- condition: 156 mul, 86 add, 6 div, 7 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], R_xx[LANES], R_yx[LANES], sum[2][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[7][8], unreachable[8], singular[8];
+} condition_results_prrr;
+typedef struct {
+    real sum[1][8], entry[5][8], unreachable[8], singular[8];
+} condition_results_rrr;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real R_xx = cosine(X_2);
+        const real R_yx = sine(X_2);
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->R_xx[k] = R_xx;
+        s->R_yx[k] = R_yx;
+        lengths[1*w + k] = legs_size;
+    }
+}
+
+INLINE void condition_legs_prrr(const prepared *m, size_t w, size_t leg, size_t legs, const
+    condition_values *s, size_t states, size_t count, int add, const real *X,
+    condition_results_prrr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real Kd_2_prrr_t_2 = m->Kd_2_prrr_t_2[i];
+        const real Kd_2_prrr_t_3 = m->Kd_2_prrr_t_3[i];
+        const real branch_2_prrr = m->branch_2_prrr[i];
+        const real inv_Kd_2_prrr_t = m->inv_Kd_2_prrr_t[i];
+        const real inv_rho2_2_prrr_t_4 = m->inv_rho2_2_prrr_t_4[i];
+        const real inv_size_prrr = m->inv_size_prrr[i];
+        const real inv_uu_3_prrr_t = m->inv_uu_3_prrr_t[i];
+        const real prrr_base_frame_xx = m->prrr_base_frame_xx[i];
+        const real prrr_base_frame_xy = m->prrr_base_frame_xy[i];
+        const real prrr_base_frame_yx = m->prrr_base_frame_yx[i];
+        const real prrr_base_frame_yy = m->prrr_base_frame_yy[i];
+        const real prrr_base_point_x = m->prrr_base_point_x[i];
+        const real prrr_base_point_y = m->prrr_base_point_y[i];
+        const real prrr_joint3_offset_x = m->prrr_joint3_offset_x[i];
+        const real prrr_platform_joint_offset_x = m->prrr_platform_joint_offset_x[i];
+        const real prrr_platform_point_x = m->prrr_platform_point_x[i];
+        const real prrr_platform_point_y = m->prrr_platform_point_y[i];
+        const real rho2_2_prrr_t = m->rho2_2_prrr_t[i];
+        const real size_prrr = m->size_prrr[i];
+        const real y_1_extra_prrr = X[(3)*w + j];
+        /* (prrr-K1) from the base point to the connection point */
+        const real q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y;
+        const real q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x;
+        const real S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x;
+        const real S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y;
+        const real S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx;
+        /* (prrr-K2) from the origin of joint 2 to the connection point */
+        const real x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy -
+            y_1_extra_prrr;
+        /* (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 2 */
+        const real Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x;
+        const real Kd_2_prrr = R(0.5)*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3;
+        /* (prrr-K7) factor of the cosine in the equation of joint 2 */
+        const real Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x;
+        /* (prrr-K8) factor of the sine in the equation of joint 2 */
+        const real Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x;
+        /* (prrr-K9) squared amplitude */
+        const real rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr;
+        /* (prrr-K10) discriminant */
+        const real disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr;
+        /* (prrr-K11) root, with the sign of the branch */
+        const real root_2_prrr = branch_2_prrr*root(disc_2_prrr);
+        /* (prrr-K17) from the origin of joint 3 to the connection point */
+        const real x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x -
+            prrr_joint3_offset_x;
+        /* (prrr-K19) cosine of the angle of joint 3 from its reference direction */
+        const real c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x;
+        /* (prrr-K20) sine of the angle of joint 3 from its reference direction */
+        const real s_3_prrr =
+            inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr;
+        /* (prrr-V2) from joint 2 to the connection point, along the links */
+        const real r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x;
+        const real r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr -
+            c_3_prrr*prrr_platform_joint_offset_x*s_3_prrr;
+        /* (prrr-K12) cosine of the angle of joint 2 from its reference direction */
+        const real inv_rho2_2_prrr = 1/rho2_2_prrr;
+        const real c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr);
+        /* (prrr-K13) sine of the angle of joint 2 from its reference direction */
+        const real s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr);
+        /* (prrr-V5) reciprocal vector 1 */
+        const real axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr;
+        const real axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr;
+        const real inv_r_2_prrr_r0_y = 1/r_2_prrr_r0_y;
+        /* (prrr-A10) coefficient of the acceleration in: acceleration of joint 2 */
+        const real d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y;
+        /* (prrr-V5) reciprocal vector 1 */
+        const real w_2_prrr_t = inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+            axis_y_prrr_axes3_r1_y*prrr_base_frame_yx);
+        const real w_2_prrr_t_2 = inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+            axis_y_prrr_axes3_r1_y*prrr_base_frame_xx);
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t = b_c_x - prrr_platform_point_x;
+        const real spread_t_2 = b_c_y - prrr_platform_point_y;
+        const real spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2;
+        /* (prrr-K9) squared amplitude */
+        const real pivot_size = magnitude(rho2_2_prrr);
+        /* (prrr-V5) reciprocal vector 1 */
+        const real pivot_size_2 = magnitude(r_2_prrr_r0_y);
+        /* (prrr-N50) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(root(inv_rho2_2_prrr_t_4*pivot_size),
+            inv_size_prrr*pivot_size_2);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_3 : spread_t_3;  /* total_prrr */
+        o->entry[0][k] = 1;
+        o->entry[1][k] = -w_2_prrr_t;
+        o->entry[2][k] = w_2_prrr_t_2;
+        o->entry[3][k] = H_a_2_prrr_z;
+        o->entry[4][k] = d1_qdd_2_prrr;
+        o->entry[5][k] = least_pivots;
+        o->entry[6][k] = disc_2_prrr;
+        o->singular[k] = UNLESS(magnitude(rho2_2_prrr) > TOLERANCE*TOLERANCE*rho2_2_prrr_t) +
+            UNLESS(magnitude(-r_2_prrr_r0_y) > TOLERANCE*size_prrr);
+        o->unreachable[k] = UNLESS(disc_2_prrr >= 0);
+    }
+}
+
+INLINE void condition_place_prrr(size_t w, const condition_results_prrr *o, size_t first, real *H,
+    real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(12)*w + k] = o->entry[0][first + k];
+        H[(1)*w + k] = o->entry[1][first + k];
+        H[(5)*w + k] = o->entry[2][first + k];
+        H[(9)*w + k] = o->entry[3][first + k];
+        H[(13)*w + k] = o->entry[4][first + k];
+        pivots[(0)*w + k] = o->entry[5][first + k];
+        reach[(0)*w + k] = o->entry[6][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_legs_rrr(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rrr *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real R_xx = s->R_xx[j];
+        const real R_yx = s->R_yx[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real Kd_1_rrr_t_2 = m->Kd_1_rrr_t_2[i];
+        const real Kd_1_rrr_t_3 = m->Kd_1_rrr_t_3[i];
+        const real branch_1_rrr = m->branch_1_rrr[i];
+        const real inv_Kd_1_rrr_t_5 = m->inv_Kd_1_rrr_t_5[i];
+        const real inv_rho2_1_rrr_t_4 = m->inv_rho2_1_rrr_t_4[i];
+        const real inv_size_rrr = m->inv_size_rrr[i];
+        const real inv_uu_2_rrr_t = m->inv_uu_2_rrr_t[i];
+        const real rho2_1_rrr_t = m->rho2_1_rrr_t[i];
+        const real rrr_base_frame_xx = m->rrr_base_frame_xx[i];
+        const real rrr_base_frame_xy = m->rrr_base_frame_xy[i];
+        const real rrr_base_frame_yx = m->rrr_base_frame_yx[i];
+        const real rrr_base_frame_yy = m->rrr_base_frame_yy[i];
+        const real rrr_base_point_x = m->rrr_base_point_x[i];
+        const real rrr_base_point_y = m->rrr_base_point_y[i];
+        const real rrr_joint2_offset_x = m->rrr_joint2_offset_x[i];
+        const real rrr_platform_joint_offset_x = m->rrr_platform_joint_offset_x[i];
+        const real rrr_platform_point_x = m->rrr_platform_point_x[i];
+        const real rrr_platform_point_y = m->rrr_platform_point_y[i];
+        const real size_rrr = m->size_rrr[i];
+        /* (rrr-K1) from the base point to the connection point */
+        const real q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y;
+        const real q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x;
+        const real S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x;
+        const real S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y;
+        /* (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond
+           joint 1 */
+        const real Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y;
+        const real Kd_1_rrr = R(0.5)*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3;
+        /* (rrr-K3) component along the reference direction */
+        const real px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx;
+        /* (rrr-K6) factor of the cosine in the equation of joint 1 */
+        const real Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x;
+        /* (rrr-K4) component across the reference direction */
+        const real py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy;
+        /* (rrr-K7) factor of the sine in the equation of joint 1 */
+        const real Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x;
+        /* (rrr-K8) squared amplitude */
+        const real rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr;
+        /* (rrr-K9) discriminant */
+        const real disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr;
+        /* (rrr-K10) root, with the sign of the branch */
+        const real root_1_rrr = branch_1_rrr*root(disc_1_rrr);
+        /* (rrr-K16) from the origin of joint 2 to the connection point */
+        const real x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x -
+            rrr_joint2_offset_x;
+        /* (rrr-K18) cosine of the angle of joint 2 from its reference direction */
+        const real c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x;
+        /* (rrr-K19) sine of the angle of joint 2 from its reference direction */
+        const real s_2_rrr =
+            inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x;
+        /* (rrr-V2) from joint 1 to the connection point, along the links */
+        const real r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x;
+        const real r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr;
+        /* (rrr-K11) cosine of the angle of joint 1 from its reference direction */
+        const real inv_rho2_1_rrr = 1/rho2_1_rrr;
+        const real c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr);
+        /* (rrr-K12) sine of the angle of joint 1 from its reference direction */
+        const real s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr);
+        /* (rrr-V5) reciprocal vector 1 */
+        const real axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr;
+        const real axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr;
+        const real inv_r_1_rrr_r0_y = 1/r_1_rrr_r0_y;
+        const real w_1_rrr_t = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_yy);
+        const real w_1_rrr_t_2 = inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+            axis_y_rrr_axes2_r1_y*rrr_base_frame_xy);
+        /* (M10) moment of the column's unit force about the platform origin */
+        const real H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_4 = b_c_x - rrr_platform_point_x;
+        const real spread_t_5 = b_c_y - rrr_platform_point_y;
+        const real spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5;
+        /* (rrr-K8) squared amplitude */
+        const real pivot_size_3 = magnitude(rho2_1_rrr);
+        /* (rrr-V5) reciprocal vector 1 */
+        const real pivot_size_4 = magnitude(r_1_rrr_r0_y);
+        /* (rrr-N30) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots_2 = lesser(root(inv_rho2_1_rrr_t_4*pivot_size_3),
+            inv_size_rrr*pivot_size_4);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_6 : spread_t_6;  /* total_rrr */
+        o->entry[0][k] = -w_1_rrr_t;
+        o->entry[1][k] = w_1_rrr_t_2;
+        o->entry[2][k] = H_a_1_rrr_z;
+        o->entry[3][k] = least_pivots_2;
+        o->entry[4][k] = disc_1_rrr;
+        o->singular[k] = UNLESS(magnitude(rho2_1_rrr) > TOLERANCE*TOLERANCE*rho2_1_rrr_t) +
+            UNLESS(magnitude(-r_1_rrr_r0_y) > TOLERANCE*size_rrr);
+        o->unreachable[k] = UNLESS(disc_1_rrr >= 0);
+    }
+}
+
+INLINE void condition_place_rrr(size_t w, const condition_results_rrr *o, size_t leg, size_t
+    first, real *H, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(2 + leg)*w + k] = o->entry[0][first + k];
+        H[(6 + leg)*w + k] = o->entry[1][first + k];
+        H[(10 + leg)*w + k] = o->entry[2][first + k];
+        pivots[(1 + leg)*w + k] = o->entry[3][first + k];
+        reach[(1 + leg)*w + k] = o->entry[4][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_prrr = s->sum[0][k];
+        const real total_rrr = s->sum[1][k];
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = root(R(0.3333333333333333)*total_prrr +
+            R(0.3333333333333333)*total_rrr);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_prrr results_prrr;
+    condition_results_rrr results_rrr;
+    clear(H, 16*w);
+    condition_before(m, w, X, s, lengths);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_prrr(m, w, 0, 1, s, 0, 1, 0, X, &results_prrr);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_place_prrr(w, &results_prrr, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prrr.sum[n], 1);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_prrr.sum, 0, sizeof results_prrr.sum);
+        for (size_t leg = 0; leg < 1; ++leg) {
+            condition_legs_prrr(m, w, leg, 0, s, 1, w, 1, X, &results_prrr);
+            condition_place_prrr(w, &results_prrr, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prrr.sum[n][k];
+            }
+        }
+    }
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rrr(m, 0, 1, s, 0, 2, 0, &results_rrr);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            condition_place_rrr(w, &results_rrr, leg, leg, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[1 + n][k] = total(results_rrr.sum[n], 2);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rrr.sum, 0, sizeof results_rrr.sum);
+        for (size_t leg = 0; leg < 2; ++leg) {
+            condition_legs_rrr(m, leg, 0, s, 1, w, 1, &results_rrr);
+            condition_place_rrr(w, &results_rrr, leg, 0, H, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[1 + n][k] = results_rrr.sum[n][k];
+            }
+        }
+    }
+    condition_after(w, s, lengths);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -5379,12 +5809,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int planar_redundant_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 4) ? PLANAR_REDUNDANT_OK : PLANAR_REDUNDANT_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 4, 1, &code, completed);
     return code;
 }
@@ -5435,12 +5866,16 @@ int planar_redundant_energy(const prepared *m, const real *X, const real *V, rea
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 1, 3, 5};
     real q[7];
     int code = planar_redundant_inverse_kinematics(m, X, q);
+    if (code != PLANAR_REDUNDANT_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 4; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -5458,8 +5893,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[16];
     int code = planar_redundant_H(m, X, H);
-    fill_rows(4, H, gap, a);
     if (code == PLANAR_REDUNDANT_OK) {
+        fill_rows(4, H, gap, a);
         least_squares(4, 4, a, step);
     }
     return code;
@@ -5468,7 +5903,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int planar_redundant_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 4 };
-    real found[4], gap[GAPS], trial[4], next[GAPS], step[4];
+    real found[4], gap[GAPS] = {0}, trial[4] = {0}, next[GAPS] = {0}, step[4] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 4) ? mismatch(m, q_actuated, X0, gap, &size)
         : PLANAR_REDUNDANT_INVALID;
@@ -5497,6 +5932,104 @@ int planar_redundant_forward_kinematics(const prepared *m, const real *q_actuate
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    static const size_t moments[] = {2};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(4, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 1; ++i) {
+        for (size_t j = 0; j < 4; ++j) {
+            H[moments[i]*4 + j] /= length;
+        }
+    }
+    check(16, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int planar_redundant_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[16], a[16], found[4], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != PLANAR_REDUNDANT_OK) {
+        refuse(4, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 4; ++i) {
+        for (size_t j = 0; j < 4; ++j) {
+            a[i*4 + j] = H[i*4 + j];
+        }
+    }
+    singular_values(4, 4, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int planar_redundant_rotation(const real *X, real *R)
 {
     const int code = all_finite(X, 4) ? PLANAR_REDUNDANT_OK : PLANAR_REDUNDANT_INVALID;
@@ -5511,7 +6044,9 @@ int planar_redundant_pose(const real *t, const real *R, real *X)
     found[0] = t[0];
     found[1] = t[1];
     found[2] = angle(R[2], R[0]);
-    const int code = all_finite(R, 4) && all_finite(found, 3) ? PLANAR_REDUNDANT_OK : PLANAR_REDUNDANT_INVALID;
+    const int turns = magnitude(R[0]*R[0] + R[1]*R[1] - 1) <= ROUNDED && magnitude(R[2]*R[2] + R[3]*R[3] - 1) <= ROUNDED
+        && magnitude(R[0]*R[2] + R[1]*R[3]) <= ROUNDED && R[0]*R[3] - R[1]*R[2] > 0;
+    const int code = turns && all_finite(found, 3) ? PLANAR_REDUNDANT_OK : PLANAR_REDUNDANT_INVALID;
     deliver(found, 4, 1, &code, X);
     return code;
 }
@@ -5540,6 +6075,11 @@ size_t planar_redundant_M_batch(const planar_redundant_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 4*i, M + 16*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_M(model, X + 4*(i + k), M + 16*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5565,6 +6105,11 @@ size_t planar_redundant_Z_batch(const planar_redundant_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 4*i, V + 4*i, Z + 4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_Z(model, X + 4*(i + k), V + 4*(i + k), Z + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5589,6 +6134,11 @@ size_t planar_redundant_H_batch(const planar_redundant_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 4*i, H + 16*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_H(model, X + 4*(i + k), H + 16*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5615,6 +6165,12 @@ size_t planar_redundant_dynamics_batch(const planar_redundant_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 4*i, V + 4*i, M + 16*i, Z + 4*i, H + 16*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_dynamics(model, X + 4*(i + k), V + 4*(i + k), M + 16*(i + k), Z + 4*(i
+                    + k), H + 16*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5639,6 +6195,11 @@ size_t planar_redundant_inverse_kinematics_batch(const planar_redundant_model *m
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 4*i, q + 7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_inverse_kinematics(model, X + 4*(i + k), q + 7*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5664,6 +6225,11 @@ size_t planar_redundant_joint_rates_batch(const planar_redundant_model *model, s
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 4*i, V + 4*i, rates + 7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_joint_rates(model, X + 4*(i + k), V + 4*(i + k), rates + 7*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5690,6 +6256,12 @@ size_t planar_redundant_joint_accelerations_batch(const planar_redundant_model *
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 4*i, V + 4*i, A + 4*i, accelerations + 7*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_joint_accelerations(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i +
+                    k), accelerations + 7*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5718,6 +6290,12 @@ size_t planar_redundant_inverse_dynamics_batch(const planar_redundant_model *mod
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 4*i, V + 4*i, A + 4*i, wrench ? wrench + 3*i : NULL, tau +
             4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_inverse_dynamics(model, X + 4*(i + k), V + 4*(i + k), A + 4*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, tau + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5746,6 +6324,12 @@ size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *mod
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 4*i, V + 4*i, tau + 4*i, wrench ? wrench + 3*i : NULL, A +
             4*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != PLANAR_REDUNDANT_OK) {
+                codes[k] = planar_redundant_forward_dynamics(model, X + 4*(i + k), V + 4*(i + k), tau + 4*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, A + 4*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5758,12 +6342,12 @@ size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *mod
 
 size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model *model, size_t n,
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *A, planar_redundant_real *completed, int *status)
+    *A, const planar_redundant_real *wrench, planar_redundant_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = planar_redundant_complete_acceleration(model, X + 4*i, V + 4*i, A + 4*i,
-            completed + 4*i);
+        const int code = planar_redundant_complete_acceleration(model, X + 4*i, V + 4*i, A + 4*i, wrench ?
+            wrench + 3*i : NULL, completed + 4*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5801,6 +6385,18 @@ size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *m
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = planar_redundant_forward_kinematics(model, q_actuated + 4*i, X0 + 4*i, X + 4*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t planar_redundant_condition_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *sigma, planar_redundant_real *legs, int
+    *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = planar_redundant_condition(model, X + 4*i, sigma + 4*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask planar_redundant_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so planar_redundant.c refuses them unless PLANAR_REDUNDANT_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as PLANAR_REDUNDANT_OK.
  */
 #ifndef PLANAR_REDUNDANT_H_INCLUDED
 #define PLANAR_REDUNDANT_H_INCLUDED
@@ -115,39 +121,42 @@ typedef struct {
 
 /* What depends on the parameters alone; set by planar_redundant_prepare, then only read. */
 typedef struct {
-    planar_redundant_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x,
-            h_star_y, m_star;
+    planar_redundant_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y,
+            h_star_x, h_star_y, legs_size, m_star;
     /* legs of type prrr */
     planar_redundant_real J_2_prrr_zz[1], J_3_prrr_zz[1], Jc_2_prrr_zz[1], Kd_2_prrr_t_2[1],
             Kd_2_prrr_t_3[1], P_c1_prrr_t[1], b_prrr_r0_x[1], branch_2_prrr[1], d_G_prrr_t[1],
             d_Gamma_2_prrr_t[1], d_Gamma_2_prrr_y[1], d_c_prrr_yy[1], d_phi_3_prrr_t[1],
             f_1_prrr_o_x[1], g_r0_x[1], g_r0_y[1], h_1_prrr_x[1], h_1_prrr_y[1], h_2_prrr_x[1],
             h_2_prrr_y[1], h_3_prrr_x[1], h_3_prrr_y[1], inv_Kd_2_prrr_t[1],
-            inv_prrr_platform_joint_offset_x[1], inv_uu_3_prrr_t[1], potential_t[1], potential_t_2[1],
-            prrr_base_frame_xx[1], prrr_base_frame_xy[1], prrr_base_frame_yx[1],
-            prrr_base_frame_yy[1], prrr_base_point_x[1], prrr_base_point_y[1],
-            prrr_joint3_offset_x[1], prrr_link1_mass[1], prrr_link2_mass[1], prrr_link3_mass[1],
-            prrr_platform_joint_offset_x[1], prrr_platform_point_x[1], prrr_platform_point_y[1],
-            rho2_2_prrr_t[1], size_prrr[1];
+            inv_prrr_platform_joint_offset_x[1], inv_rho2_2_prrr_t_4[1], inv_size_prrr[1],
+            inv_uu_3_prrr_t[1], potential_t[1], potential_t_2[1], prrr_base_frame_xx[1],
+            prrr_base_frame_xy[1], prrr_base_frame_yx[1], prrr_base_frame_yy[1], prrr_base_point_x[1],
+            prrr_base_point_y[1], prrr_joint3_offset_x[1], prrr_link1_mass[1], prrr_link2_mass[1],
+            prrr_link3_mass[1], prrr_platform_joint_offset_x[1], prrr_platform_point_x[1],
+            prrr_platform_point_y[1], rho2_2_prrr_t[1], size_prrr[1];
     /* legs of type rrr */
     planar_redundant_real J_1_rrr_zz[2], J_2_rrr_zz[2], Jc_1_rrr_zz[2], Kd_1_rrr_t_2[2],
             Kd_1_rrr_t_3[2], b_rrr_r0_x[2], b_rrr_r0_y[2], branch_1_rrr[2], d_Gamma_1_rrr_t[2],
             d_Gamma_1_rrr_y[2], d_c_rrr_yy[2], d_phi_2_rrr_t[2], g_r0_x_2[2], g_r0_y_2[2],
             h_1_rrr_x[2], h_1_rrr_y[2], h_2_rrr_x[2], h_2_rrr_y[2], inv_Kd_1_rrr_t_5[2],
-            inv_rrr_platform_joint_offset_x[2], inv_uu_2_rrr_t[2], rho2_1_rrr_t[2],
-            rrr_base_frame_xx[2], rrr_base_frame_xy[2], rrr_base_frame_yx[2], rrr_base_frame_yy[2],
-            rrr_base_point_x[2], rrr_base_point_y[2], rrr_joint2_offset_x[2], rrr_link1_mass[2],
-            rrr_link2_mass[2], rrr_platform_joint_offset_x[2], rrr_platform_point_x[2],
-            rrr_platform_point_y[2], size_rrr[2];
+            inv_rho2_1_rrr_t_4[2], inv_rrr_platform_joint_offset_x[2], inv_size_rrr[2],
+            inv_uu_2_rrr_t[2], rho2_1_rrr_t[2], rrr_base_frame_xx[2], rrr_base_frame_xy[2],
+            rrr_base_frame_yx[2], rrr_base_frame_yy[2], rrr_base_point_x[2], rrr_base_point_y[2],
+            rrr_joint2_offset_x[2], rrr_link1_mass[2], rrr_link2_mass[2],
+            rrr_platform_joint_offset_x[2], rrr_platform_point_x[2], rrr_platform_point_y[2],
+            size_rrr[2];
 } planar_redundant_model;
 
 extern const planar_redundant_params planar_redundant_default_params;
 extern const planar_redundant_real planar_redundant_HOME_X[PLANAR_REDUNDANT_NQ];
 extern const planar_redundant_real planar_redundant_HOME_Q[PLANAR_REDUNDANT_NJ];
 
-/* Prepare a model.  PLANAR_REDUNDANT_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  PLANAR_REDUNDANT_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int planar_redundant_prepare(const planar_redundant_params *params, planar_redundant_model *model);
 
 /* Inertia matrix M. 246 mul, 170 add, 6 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -224,14 +233,14 @@ size_t planar_redundant_forward_dynamics_batch(const planar_redundant_model *mod
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
     *tau, const planar_redundant_real *wrench, planar_redundant_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int planar_redundant_complete_acceleration(const planar_redundant_model *model, const
     planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real *A,
-    planar_redundant_real *completed);
+    const planar_redundant_real *wrench, planar_redundant_real *completed);
 size_t planar_redundant_complete_acceleration_batch(const planar_redundant_model *model, size_t n,
     const planar_redundant_real *X, const planar_redundant_real *V, const planar_redundant_real
-    *A, planar_redundant_real *completed, int *status);
+    *A, const planar_redundant_real *wrench, planar_redundant_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 309 mul, 187 add, 6 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -260,13 +269,24 @@ size_t planar_redundant_forward_kinematics_batch(const planar_redundant_model *m
     const planar_redundant_real *q_actuated, const planar_redundant_real *X0,
     planar_redundant_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 156 mul, 86 add, 6 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (4), legs (3). */
+int planar_redundant_condition(const planar_redundant_model *model, const planar_redundant_real
+    *X, planar_redundant_real *sigma, planar_redundant_real *legs);
+size_t planar_redundant_condition_batch(const planar_redundant_model *model, size_t n, const
+    planar_redundant_real *X, planar_redundant_real *sigma, planar_redundant_real *legs, int
+    *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int planar_redundant_rotation(const planar_redundant_real *X, planar_redundant_real *R);
 size_t planar_redundant_rotation_batch(size_t n, const planar_redundant_real *X,
     planar_redundant_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R; extra coordinates zero. In: t (2), R (2 x
-   2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2).
+   Out: X (NQ). */
 int planar_redundant_pose(const planar_redundant_real *t, const planar_redundant_real *R,
     planar_redundant_real *X);
 size_t planar_redundant_pose_batch(size_t n, const planar_redundant_real *t, const

@@ -13,7 +13,13 @@ tau:    leg 1 joint 1, leg 1 joint 2, leg 2 joint 1, leg 3 joint 1
 wrench: fx, fy, mz
 
 Impossible states (unreachable, singular, not finite) give NaN, in their rows only.
+Arguments are made of real numbers: TypeError for complex ones, truth values, text and masked
+arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows what is required, by
+position or keyword; all else is given by keyword.
 """
+
+import warnings
+from numbers import Real
 
 import numpy as np
 
@@ -31,6 +37,7 @@ __all__ = [
     "Parameters",
     "Z",
     "complete_acceleration",
+    "condition",
     "dynamics",
     "energy",
     "forward_dynamics",
@@ -52,15 +59,10 @@ NU = 4
 NC = 0
 NW = 3
 NJ = 7
-HOME_X = np.array([0.03, -0.02, 0.09999999999999999, 0.1])
-HOME_Q = np.array([0.1, 0.7, -1.2, 0.7, -1.2, 0.7, -1.2])
-HOME_X.setflags(write=False)
-HOME_Q.setflags(write=False)
 
-# Lengths below this fraction of a leg's size, and pivots below it, count as zero.
+# Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_PER_LEG = ("prrr_", "rrr_", )
 _LEGS = {  # positions of the legs of each type
     "prrr": (0,),
     "rrr": (1, 2),
@@ -162,41 +164,45 @@ _DEFAULTS = {
         [[0.0002, 0.0, 0.0], [0.0, 0.013433333333333337, 0.0], [0.0, 0.0, 0.013433333333333337]],
     ],
 }
-_RULES = {  # shape, entries that are zero by structure, what the values must be
-    "gravity": ((3,), (2,), ""),
-    "platform_mass": ((), (), "mass"),
-    "platform_centre_of_mass": ((3,), (2,), ""),
-    "platform_inertia": ((3, 3), (), "inertia"),
-    "prrr_base_point": ((1, 3), (2,), ""),
-    "prrr_base_frame": ((1, 3, 3), (), "rotation"),
-    "prrr_platform_point": ((1, 3), (2,), ""),
-    "prrr_joint3_offset": ((1, 3), (1, 2), ""),
-    "prrr_platform_joint_offset": ((1, 3), (1, 2), ""),
-    "prrr_link1_mass": ((1,), (), "mass"),
-    "prrr_link1_centre_of_mass": ((1, 3), (2,), ""),
-    "prrr_link1_inertia": ((1, 3, 3), (), "inertia"),
-    "prrr_link2_mass": ((1,), (), "mass"),
-    "prrr_link2_centre_of_mass": ((1, 3), (2,), ""),
-    "prrr_link2_inertia": ((1, 3, 3), (), "inertia"),
-    "prrr_link3_mass": ((1,), (), "mass"),
-    "prrr_link3_centre_of_mass": ((1, 3), (2,), ""),
-    "prrr_link3_inertia": ((1, 3, 3), (), "inertia"),
-    "rrr_base_point": ((2, 3), (2,), ""),
-    "rrr_base_frame": ((2, 3, 3), (), "rotation"),
-    "rrr_platform_point": ((2, 3), (2,), ""),
-    "rrr_joint2_offset": ((2, 3), (1, 2), ""),
-    "rrr_platform_joint_offset": ((2, 3), (1, 2), ""),
-    "rrr_link1_mass": ((2,), (), "mass"),
-    "rrr_link1_centre_of_mass": ((2, 3), (2,), ""),
-    "rrr_link1_inertia": ((2, 3, 3), (), "inertia"),
-    "rrr_link2_mass": ((2,), (), "mass"),
-    "rrr_link2_centre_of_mass": ((2, 3), (2,), ""),
-    "rrr_link2_inertia": ((2, 3, 3), (), "inertia"),
+_RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
+    "gravity": ((3,), (3,), (2,), "free"),
+    "platform_mass": ((), (), (), "mass"),
+    "platform_centre_of_mass": ((3,), (3,), (2,), "free"),
+    "platform_inertia": ((3, 3), (3, 3), (), "planar_inertia"),
+    "prrr_base_point": ((1, 3), (3,), (2,), "free"),
+    "prrr_base_frame": ((1, 3, 3), (3, 3), (), "planar_rotation"),
+    "prrr_platform_point": ((1, 3), (3,), (2,), "free"),
+    "prrr_joint3_offset": ((1, 3), (3,), (1, 2), "free"),
+    "prrr_platform_joint_offset": ((1, 3), (3,), (1, 2), "free"),
+    "prrr_link1_mass": ((1,), (), (), "mass"),
+    "prrr_link1_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "prrr_link1_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "prrr_link2_mass": ((1,), (), (), "mass"),
+    "prrr_link2_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "prrr_link2_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "prrr_link3_mass": ((1,), (), (), "mass"),
+    "prrr_link3_centre_of_mass": ((1, 3), (3,), (2,), "free"),
+    "prrr_link3_inertia": ((1, 3, 3), (3, 3), (), "planar_inertia"),
+    "rrr_base_point": ((2, 3), (3,), (2,), "free"),
+    "rrr_base_frame": ((2, 3, 3), (3, 3), (), "planar_rotation"),
+    "rrr_platform_point": ((2, 3), (3,), (2,), "free"),
+    "rrr_joint2_offset": ((2, 3), (3,), (1, 2), "free"),
+    "rrr_platform_joint_offset": ((2, 3), (3,), (1, 2), "free"),
+    "rrr_link1_mass": ((2,), (), (), "mass"),
+    "rrr_link1_centre_of_mass": ((2, 3), (3,), (2,), "free"),
+    "rrr_link1_inertia": ((2, 3, 3), (3, 3), (), "planar_inertia"),
+    "rrr_link2_mass": ((2,), (), (), "mass"),
+    "rrr_link2_centre_of_mass": ((2, 3), (3,), (2,), "free"),
+    "rrr_link2_inertia": ((2, 3, 3), (3, 3), (), "planar_inertia"),
 }
 
 
 class Parameters:
     """Parameters of the model: frozen, with read-only copies of arrays.
+
+    Values obey the rules of a specification: masses are not negative, inertia tensors symmetric
+    and without negative principal moments, frames rotations, axes of length 1, and what the
+    structure fixes at zero is zero.  Copies and what is unpickled are made anew from the values.
 
     Attributes:
         gravity: acceleration of gravity, base frame [m/s^2], shape (3,).
@@ -231,14 +237,12 @@ class Parameters:
     """
 
     def __init__(self, **values):
-        """Defaults, with the given values in their place; ValueError if one is impossible."""
-        unknown = sorted(set(values) - set(_DEFAULTS))
-        if unknown:
-            raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
-        for name, rule in _RULES.items():
-            value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_cache", {})
+        """Defaults, with the given values in their place; ValueError if one is impossible.
+
+        TypeError for what is not made of real numbers.  A warning tells of an inertia that no
+        body has, by its principal moments.
+        """
+        _fill(self, values, values)
 
     def __setattr__(self, name, value):
         raise AttributeError("Parameters are frozen; use replace()")
@@ -248,7 +252,10 @@ class Parameters:
 
     def replace(self, **changes):
         """A copy with some values changed."""
-        return Parameters(**{**{name: getattr(self, name) for name in _RULES}, **changes})
+        return _fill(object.__new__(Parameters), {**self._values(), **changes}, changes)
+
+    def __reduce__(self):
+        return _remade, (self._values(),)
 
     def __eq__(self, other):
         if not isinstance(other, Parameters):
@@ -262,6 +269,10 @@ class Parameters:
         changed = [n for n in _RULES if not np.array_equal(getattr(self, n), _DEFAULTS[n])]
         return f"Parameters({', '.join(f'{n}={getattr(self, n)!r}' for n in changed)})"
 
+    def _values(self):
+        """All values by name."""
+        return {name: getattr(self, name) for name in _RULES}
+
     def _prepared(self):
         """Values that depend on the parameters alone, computed once."""
         if "model" not in self._cache:
@@ -269,48 +280,156 @@ class Parameters:
         return self._cache["model"]
 
 
-def _checked(name, value, shape, zeros, rule):
-    """A parameter as a read-only array (or float), or ValueError."""
-    value = np.array(value, dtype=float)
+def _fill(p, values, fresh):
+    """The parameters with these values, checked; fresh ones are warned of, where there is need."""
+    unknown = sorted(set(values) - set(_DEFAULTS))
+    if unknown:
+        raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
+    for name, rule in _RULES.items():
+        value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
+        object.__setattr__(p, name, value)
+        if rule[-1] == "inertia" and name in fresh:
+            _warn(name, value, 4)
+    object.__setattr__(p, "_cache", {})
+    return p
+
+
+def _remade(values):
+    """Parameters from the values of others: a copy, or what was pickled."""
+    return _fill(object.__new__(Parameters), values, ())
+
+
+_REAL = np.dtype(float)
+_KINDS = {"b": "truth values", "c": "complex numbers", "S": "text", "U": "text"}
+
+
+def _numbers(function, name, value):
+    """An argument as an array of floats; TypeError unless it is made of real numbers alone."""
+    try:
+        kind = _unfit(value)
+        if not kind:
+            return np.asarray(value, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{function}: {name} is no array of numbers: {error}") from None
+    raise TypeError(f"{function}: {name}: expected real numbers, got {kind}")
+
+
+def _unfit(value):
+    """What, other than real numbers, a value is made of; or an empty text."""
+    if isinstance(value, (list, tuple)):
+        if set(map(type, value)) <= {float, int, np.float64}:
+            return ""
+        return next(filter(None, map(_unfit, value)), "")
+    if isinstance(value, np.ma.MaskedArray):
+        return "a masked array"
+    if value is None:
+        return "None"
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        odd = (v for v in array.flat if not isinstance(v, Real) or isinstance(v, bool))
+        return next((type(v).__name__ for v in odd), "")
+    return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
+
+
+def _vector(function, name, value, size):
+    """An argument as an array of floats (..., size), or an error that names it."""
+    if type(value) is not np.ndarray or value.dtype is not _REAL:
+        value = _numbers(function, name, value)
+    if value.ndim == 0 or value.shape[-1] != size:
+        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
+    return value
+
+
+def _lead(**arguments):
+    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
+    leads = [v.shape[:-1] for v in arguments.values()]
+    if not any(leads):
+        return ()
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
+
+
+def _given(p):
+    """The parameters, by default the model's own; TypeError for anything else."""
+    if isinstance(p, Parameters):
+        return p
+    if p is None:
+        return _DEFAULT
+    kind = type(p).__name__
+    if kind == "Parameters":
+        kind = f"Parameters of {type(p).__module__} (another module, or this one imported anew)"
+    raise TypeError(f"p: expected Parameters, got {kind}; a wrench is given as wrench=")
+
+
+def _frozen(value):
+    """A copy that cannot be made writable again: its memory is a bytes object."""
+    return np.frombuffer(value.tobytes(), dtype=float).reshape(value.shape)
+
+
+def _checked(name, value, shape, core, zeros, rule):
+    """A parameter as a read-only array (or float); ValueError or TypeError if it is impossible."""
+    value = _numbers("Parameters", name, value) + 0.0  # a copy, without the sign of zero
     if value.shape != shape:
         raise ValueError(f"Parameters: {name} has shape {value.shape}, expected {shape}")
     if not np.all(np.isfinite(value)):
         raise ValueError(f"Parameters: {name} has entries that are not finite")
-    flat = value.reshape(-1, value[0].size if zeros and value.ndim > len(_core(name)) else value.size)
-    if any(np.any(np.abs(flat[:, k]) > 1e-9) for k in zeros):
+    if np.any(np.abs(value) > 1e+12):
+        raise ValueError(f"Parameters: {name} has entries beyond 1e+12 in size")
+    value = np.array(value)
+    each = value.reshape(-1, *core)
+    flat = value.reshape(len(each), -1)
+    if any(np.any(np.abs(flat[:, k]) > 1e-09) for k in zeros):
         raise ValueError(f"Parameters: {name} must be zero in entries {zeros}: the structure is fixed")
-    for k in zeros:
-        flat[:, k] = 0.0
-    message = _violates(value, rule)
+    flat[:, list(zeros)] = 0.0
+    message = _violates(each, rule)
     if message:
         raise ValueError(f"Parameters: {name} {message}")
-    value.setflags(write=False)
-    return value if shape else float(value)
-
-
-def _core(name):
-    """Shape of one leg's entry, or of the whole."""
-    shape = _RULES[name][0]
-    return shape[1:] if name.startswith(_PER_LEG) else shape
+    return _frozen(value) if shape else float(value)
 
 
 def _violates(value, rule):
-    """What is wrong with a parameter, or an empty text."""
+    """What is wrong with the values of a parameter, one after another; or an empty text."""
     if rule == "mass" and np.any(value < 0.0):
         return "must not be negative"
-    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-6):
+    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-06):
         return "must be of length 1"
-    if rule == "inertia" and np.any(np.abs(value - np.swapaxes(value, -1, -2)) > 1e-9 * (
-        1e-300 + np.max(np.abs(value)))):
-        return "must be symmetric"
-    if rule == "rotation":
-        error = np.abs(value @ np.swapaxes(value, -1, -2) - np.eye(3))
-        if np.any(error > 1e-6) or np.any(np.linalg.det(value) < 0.0):
-            return "must be rotation matrices"
-        if np.any(np.abs(value[..., 2, 2] - 1.0) > 1e-6):
-            return "must turn about the normal of the plane"
+    if rule == "planar_inertia" and np.any(value[:, 2, 2] < 0.0):
+        return "must have an izz that is not negative"
+    if rule == "inertia":
+        rounding = 1e-09 * np.max(np.abs(value), axis=(1, 2))
+        if np.any(np.max(np.abs(value - np.swapaxes(value, 1, 2)), axis=(1, 2)) > rounding):
+            return "must be symmetric to 1e-09 of its largest entry"
+        if np.any(np.linalg.eigvalsh(value)[:, 0] < -rounding):
+            return "must have no negative principal moments, to 1e-09 of its largest entry"
+    if rule in ("rotation", "planar_rotation") and not np.all(_are_rotations(value)):
+        return "must be rotation matrices: orthonormal to 1e-06, determinant +1"
+    if rule == "planar_rotation" and np.any(np.abs(value[:, 2, 2] - 1.0) > 1e-09):
+        return "must turn about the normal of the plane"
     return ""
 
+
+def _are_rotations(R):
+    """Which matrices (..., n, n) have orthonormal rows, to 1e-06, and a positive determinant."""
+    with np.errstate(all="ignore"):
+        error = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1]))
+        return np.all(error <= 1e-06, axis=(-1, -2)) & (np.linalg.det(R) > 0.0)
+
+
+def _warn(name, value, level):
+    """Tell of principal moments that no body has: the largest exceeds the sum of the others."""
+    for tensor in value.reshape(-1, 3, 3):
+        small, middle, large = np.linalg.eigvalsh(tensor)
+        if large > small + middle + 1e-09 * np.max(np.abs(tensor)):
+            warnings.warn(
+                f"Parameters: {name}: principal moments {small:.6g}, {middle:.6g}, {large:.6g} kg m^2"
+                " belong to no body: the largest exceeds the sum of the others", stacklevel=level)
+
+
+HOME_X = _frozen(np.array([0.03, -0.02, 0.09999999999999999, 0.1]))
+HOME_Q = _frozen(np.array([0.1, 0.7, -1.2, 0.7, -1.2, 0.7, -1.2]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
     "branch_2_prrr": np.array([1.0]),
@@ -384,34 +503,31 @@ def _prepare(p):
     Kd_2_prrr_t = prrr_joint3_offset_x*prrr_joint3_offset_x
     Kd_2_prrr_t_2 = 0.5*Kd_2_prrr_t
     Kd_2_prrr_t_3 = 0.5*uu_3_prrr_t
-    # (prrr-G1) size of the leg, the measure of what is near singular
-    size_prrr_t = prrr_base_point_x*prrr_base_point_x + prrr_base_point_y*prrr_base_point_y
-    size_prrr_t_2 = prrr_platform_point_y*prrr_platform_point_y
-    size_prrr_t_3 = prrr_platform_point_x*prrr_platform_point_x + size_prrr_t_2
-    size_prrr_t_4 = Kd_2_prrr_t + size_prrr_t + size_prrr_t_3 + uu_3_prrr_t
-    size_prrr = sqrt(size_prrr_t_4)
+    # (prrr-G2) length of the leg's lever arms, the measure of what is near singular
+    size_prrr_t = 4.58151643161e-07 + Kd_2_prrr_t + uu_3_prrr_t
+    size_prrr = sqrt(size_prrr_t)
     # (prrr-K9) squared amplitude
-    rho2_2_prrr_t = size_prrr*size_prrr*size_prrr_t_4
+    rho2_2_prrr_t = size_prrr*size_prrr*size_prrr_t
     # (prrr-K16) the vector from joint 2 to the connection point, resolved along link 2
     inv_Kd_2_prrr_t = 1.0/Kd_2_prrr_t
     # (prrr-K19) cosine of the angle of joint 3 from its reference direction
     inv_uu_3_prrr_t = 1.0/uu_3_prrr_t
-    # (prrr-G4) inertia tensor of link 2 about the origin of link 2
+    # (prrr-G5) inertia tensor of link 2 about the origin of link 2
     J_2_prrr_t = (
     prrr_link2_centre_of_mass_x*prrr_link2_centre_of_mass_x +
         prrr_link2_centre_of_mass_y*prrr_link2_centre_of_mass_y
     )
     J_2_prrr_zz = prrr_link2_inertia_zz + J_2_prrr_t*prrr_link2_mass
-    # (prrr-G5) connection point to the centre of mass of link 3
+    # (prrr-G6) connection point to the centre of mass of link 3
     rho_tip_3_prrr_x = prrr_link3_centre_of_mass_x - prrr_platform_joint_offset_x
-    # (prrr-G7) inertia tensor of link 3 about the connection point
+    # (prrr-G8) inertia tensor of link 3 about the connection point
     J_3_prrr_t = (
     prrr_link3_centre_of_mass_y*prrr_link3_centre_of_mass_y + rho_tip_3_prrr_x*rho_tip_3_prrr_x
     )
     J_3_prrr_zz = prrr_link3_inertia_zz + J_3_prrr_t*prrr_link3_mass
     # (prrr-N19) inertia tensor of the links from 2 outwards about joint 2
     Jc_2_prrr_zz = J_2_prrr_zz + J_3_prrr_zz
-    # (prrr-G6) first moment of link 3 about the connection point
+    # (prrr-G7) first moment of link 3 about the connection point
     h_3_prrr_x = prrr_link3_mass*rho_tip_3_prrr_x
     h_3_prrr_y = prrr_link3_centre_of_mass_y*prrr_link3_mass
     # (prrr-V6) reciprocal vector 2
@@ -429,19 +545,21 @@ def _prepare(p):
     h_star_t_3 = prrr_link3_mass*prrr_platform_point_x
     h_star_t_4 = prrr_link3_mass*prrr_platform_point_y
     # (L3) inertia tensor about the platform origin
-    J_star_t_5 = prrr_link3_mass*size_prrr_t_2
-    J_star_t_6 = prrr_link3_mass*size_prrr_t_3
+    J_star_t_5 = prrr_platform_point_y*prrr_platform_point_y
+    J_star_t_6 = J_star_t_5 + prrr_platform_point_x*prrr_platform_point_x
+    J_star_t_7 = J_star_t_5*prrr_link3_mass
+    J_star_t_8 = J_star_t_6*prrr_link3_mass
     # (prrr-N6) remainder without the acceleration in: acceleration of the reference point of link 2, less gravity
     g_r0_x = gravity_x*prrr_base_frame_xy + gravity_y*prrr_base_frame_yy
     g_r0_y = -gravity_x*prrr_base_frame_xx - gravity_y*prrr_base_frame_yx
-    # (prrr-G3) first moment of link 2 about the origin of link 2
+    # (prrr-G4) first moment of link 2 about the origin of link 2
     h_2_prrr_x = prrr_link2_centre_of_mass_x*prrr_link2_mass
     h_2_prrr_y = prrr_link2_centre_of_mass_y*prrr_link2_mass
     # (prrr-N4) remainder without the acceleration in: inertia force of link 1 less its weight
     f_1_prrr_o_x = g_r0_x*prrr_link1_mass
     # (prrr-N24) force that accelerates joint 1, per unit
     P_c1_prrr_t = prrr_link1_mass + prrr_link2_mass
-    # (prrr-G2) first moment of link 1 about the origin of link 1
+    # (prrr-G3) first moment of link 1 about the origin of link 1
     h_1_prrr_x = prrr_link1_centre_of_mass_x*prrr_link1_mass
     h_1_prrr_y = prrr_link1_centre_of_mass_y*prrr_link1_mass
     # (V1) potential energy
@@ -449,45 +567,49 @@ def _prepare(p):
     b_prrr_r0_y = -prrr_base_frame_xx*prrr_base_point_x - prrr_base_frame_yx*prrr_base_point_y
     potential_t = b_prrr_r0_y*prrr_link1_mass
     potential_t_2 = b_prrr_r0_y*prrr_link2_mass
+    # (prrr-K9) squared amplitude
+    inv_rho2_2_prrr_t_4 = 1.0/rho2_2_prrr_t
+    # (prrr-V5) reciprocal vector 1
+    inv_size_prrr = 1.0/size_prrr
     total_prrr = np.sum(np.broadcast_to(prrr_link3_mass, _prrr))
     total_prrr_x = np.sum(np.broadcast_to(h_star_t_3, _prrr))
     total_prrr_y = np.sum(np.broadcast_to(h_star_t_4, _prrr))
-    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_5, _prrr))
-    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_6, _prrr))
+    total_prrr_xx = np.sum(np.broadcast_to(J_star_t_7, _prrr))
+    total_prrr_zz = np.sum(np.broadcast_to(J_star_t_8, _prrr))
+    total_prrr_x_2 = np.sum(np.broadcast_to(prrr_platform_point_x, _prrr))
+    total_prrr_y_2 = np.sum(np.broadcast_to(prrr_platform_point_y, _prrr))
+    total_prrr_2 = np.sum(np.broadcast_to(size_prrr_t, _prrr))
     # (rrr-K17) squared length, across the axis, of the direction fixed in link 2
     uu_2_rrr_t = rrr_platform_joint_offset_x*rrr_platform_joint_offset_x
     # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
     Kd_1_rrr_t = rrr_joint2_offset_x*rrr_joint2_offset_x
     Kd_1_rrr_t_2 = 0.5*Kd_1_rrr_t
     Kd_1_rrr_t_3 = 0.5*uu_2_rrr_t
-    # (rrr-G1) size of the leg, the measure of what is near singular
-    size_rrr_t = rrr_base_point_x*rrr_base_point_x + rrr_base_point_y*rrr_base_point_y
-    size_rrr_t_2 = rrr_platform_point_y*rrr_platform_point_y
-    size_rrr_t_3 = rrr_platform_point_x*rrr_platform_point_x + size_rrr_t_2
-    size_rrr_t_4 = Kd_1_rrr_t + size_rrr_t + size_rrr_t_3 + uu_2_rrr_t
-    size_rrr = sqrt(size_rrr_t_4)
+    # (rrr-G2) length of the leg's lever arms, the measure of what is near singular
+    size_rrr_t = 4.58151643161e-07 + Kd_1_rrr_t + uu_2_rrr_t
+    size_rrr = sqrt(size_rrr_t)
     # (rrr-K8) squared amplitude
-    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t_4
+    rho2_1_rrr_t = size_rrr*size_rrr*size_rrr_t
     # (rrr-K15) the vector from joint 1 to the connection point, resolved along link 1
     inv_Kd_1_rrr_t_5 = 1.0/Kd_1_rrr_t
     # (rrr-K18) cosine of the angle of joint 2 from its reference direction
     inv_uu_2_rrr_t = 1.0/uu_2_rrr_t
-    # (rrr-G3) inertia tensor of link 1 about the origin of link 1
+    # (rrr-G4) inertia tensor of link 1 about the origin of link 1
     J_1_rrr_t = (
     rrr_link1_centre_of_mass_x*rrr_link1_centre_of_mass_x +
         rrr_link1_centre_of_mass_y*rrr_link1_centre_of_mass_y
     )
     J_1_rrr_zz = rrr_link1_inertia_zz + J_1_rrr_t*rrr_link1_mass
-    # (rrr-G4) connection point to the centre of mass of link 2
+    # (rrr-G5) connection point to the centre of mass of link 2
     rho_tip_2_rrr_x = rrr_link2_centre_of_mass_x - rrr_platform_joint_offset_x
-    # (rrr-G6) inertia tensor of link 2 about the connection point
+    # (rrr-G7) inertia tensor of link 2 about the connection point
     J_2_rrr_t = (
     rho_tip_2_rrr_x*rho_tip_2_rrr_x + rrr_link2_centre_of_mass_y*rrr_link2_centre_of_mass_y
     )
     J_2_rrr_zz = rrr_link2_inertia_zz + J_2_rrr_t*rrr_link2_mass
     # (rrr-N11) inertia tensor of the links from 1 outwards about joint 1
     Jc_1_rrr_zz = J_1_rrr_zz + J_2_rrr_zz
-    # (rrr-G5) first moment of link 2 about the connection point
+    # (rrr-G6) first moment of link 2 about the connection point
     h_2_rrr_x = rho_tip_2_rrr_x*rrr_link2_mass
     h_2_rrr_y = rrr_link2_centre_of_mass_y*rrr_link2_mass
     # (rrr-V6) reciprocal vector 2
@@ -505,22 +627,31 @@ def _prepare(p):
     h_star_t_5 = rrr_link2_mass*rrr_platform_point_x
     h_star_t_6 = rrr_link2_mass*rrr_platform_point_y
     # (L3) inertia tensor about the platform origin
-    J_star_t_7 = rrr_link2_mass*size_rrr_t_2
-    J_star_t_8 = rrr_link2_mass*size_rrr_t_3
+    J_star_t_9 = rrr_platform_point_y*rrr_platform_point_y
+    J_star_t_10 = J_star_t_9 + rrr_platform_point_x*rrr_platform_point_x
+    J_star_t_11 = J_star_t_9*rrr_link2_mass
+    J_star_t_12 = J_star_t_10*rrr_link2_mass
     # (rrr-N2) remainder without the acceleration in: acceleration of the reference point of link 1, less gravity
     g_r0_x_2 = gravity_x*rrr_base_frame_xx + gravity_y*rrr_base_frame_yx
     g_r0_y_2 = gravity_x*rrr_base_frame_xy + gravity_y*rrr_base_frame_yy
-    # (rrr-G2) first moment of link 1 about the origin of link 1
+    # (rrr-G3) first moment of link 1 about the origin of link 1
     h_1_rrr_x = rrr_link1_centre_of_mass_x*rrr_link1_mass
     h_1_rrr_y = rrr_link1_centre_of_mass_y*rrr_link1_mass
     # (V1) potential energy
     b_rrr_r0_x = rrr_base_frame_xx*rrr_base_point_x + rrr_base_frame_yx*rrr_base_point_y
     b_rrr_r0_y = rrr_base_frame_xy*rrr_base_point_x + rrr_base_frame_yy*rrr_base_point_y
+    # (rrr-K8) squared amplitude
+    inv_rho2_1_rrr_t_4 = 1.0/rho2_1_rrr_t
+    # (rrr-V5) reciprocal vector 1
+    inv_size_rrr = 1.0/size_rrr
     total_rrr = np.sum(np.broadcast_to(rrr_link2_mass, _rrr))
     total_rrr_x = np.sum(np.broadcast_to(h_star_t_5, _rrr))
     total_rrr_y = np.sum(np.broadcast_to(h_star_t_6, _rrr))
-    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_7, _rrr))
-    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_8, _rrr))
+    total_rrr_xx = np.sum(np.broadcast_to(J_star_t_11, _rrr))
+    total_rrr_zz = np.sum(np.broadcast_to(J_star_t_12, _rrr))
+    total_rrr_x_2 = np.sum(np.broadcast_to(rrr_platform_point_x, _rrr))
+    total_rrr_y_2 = np.sum(np.broadcast_to(rrr_platform_point_y, _rrr))
+    total_rrr_2 = np.sum(np.broadcast_to(size_rrr_t, _rrr))
     # (L1) mass of the platform with the gathered masses
     m_star = platform_mass + total_prrr + total_rrr
     # (L2) first moment about the platform origin
@@ -529,20 +660,28 @@ def _prepare(p):
     # (L3) inertia tensor about the platform origin
     J_star_xx = J_star_t_3 + total_prrr_xx + total_rrr_xx
     J_star_zz = J_star_t_4 + platform_inertia_zz + total_prrr_zz + total_rrr_zz
-    J_star_t_9 = J_star_xx - J_star_zz
-    J_star_t_10 = J_star_t_9 - J_star_xx
+    J_star_t_13 = J_star_xx - J_star_zz
+    J_star_t_14 = J_star_t_13 - J_star_xx
     # (M4) centripetal force and weight of the platform
     Z_p_t = gravity_x*m_star
     Z_p_t_2 = gravity_y*m_star
+    # (C1) centroid of the platform points
+    b_c_x = 0.3333333333333333*total_prrr_x_2 + 0.3333333333333333*total_rrr_x_2
+    b_c_y = 0.3333333333333333*total_prrr_y_2 + 0.3333333333333333*total_rrr_y_2
+    # (C3) rms size of the legs, taken where the platform points coincide
+    legs_size = sqrt(0.3333333333333333*total_prrr_2 + 0.3333333333333333*total_rrr_2)
     shared = {
-        "J_star_t_10": float(J_star_t_10),
+        "J_star_t_14": float(J_star_t_14),
         "J_star_zz": float(J_star_zz),
         "Z_p_t": float(Z_p_t),
         "Z_p_t_2": float(Z_p_t_2),
+        "b_c_x": float(b_c_x),
+        "b_c_y": float(b_c_y),
         "gravity_x": float(gravity_x),
         "gravity_y": float(gravity_y),
         "h_star_x": float(h_star_x),
         "h_star_y": float(h_star_y),
+        "legs_size": float(legs_size),
         "m_star": float(m_star),
     }
     legs = {
@@ -571,6 +710,8 @@ def _prepare(p):
             "h_3_prrr_y": np.broadcast_to(h_3_prrr_y, _prrr),
             "inv_Kd_2_prrr_t": np.broadcast_to(inv_Kd_2_prrr_t, _prrr),
             "inv_prrr_platform_joint_offset_x": np.broadcast_to(inv_prrr_platform_joint_offset_x, _prrr),
+            "inv_rho2_2_prrr_t_4": np.broadcast_to(inv_rho2_2_prrr_t_4, _prrr),
+            "inv_size_prrr": np.broadcast_to(inv_size_prrr, _prrr),
             "inv_uu_3_prrr_t": np.broadcast_to(inv_uu_3_prrr_t, _prrr),
             "potential_t": np.broadcast_to(potential_t, _prrr),
             "potential_t_2": np.broadcast_to(potential_t_2, _prrr),
@@ -610,7 +751,9 @@ def _prepare(p):
             "h_2_rrr_x": np.broadcast_to(h_2_rrr_x, _rrr),
             "h_2_rrr_y": np.broadcast_to(h_2_rrr_y, _rrr),
             "inv_Kd_1_rrr_t_5": np.broadcast_to(inv_Kd_1_rrr_t_5, _rrr),
+            "inv_rho2_1_rrr_t_4": np.broadcast_to(inv_rho2_1_rrr_t_4, _rrr),
             "inv_rrr_platform_joint_offset_x": np.broadcast_to(inv_rrr_platform_joint_offset_x, _rrr),
+            "inv_size_rrr": np.broadcast_to(inv_size_rrr, _rrr),
             "inv_uu_2_rrr_t": np.broadcast_to(inv_uu_2_rrr_t, _rrr),
             "rho2_1_rrr_t": np.broadcast_to(rho2_1_rrr_t, _rrr),
             "rrr_base_frame_xx": np.broadcast_to(rrr_base_frame_xx, _rrr),
@@ -681,12 +824,13 @@ class _Floats:
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
+    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
 
 
 class _Arrays:
     """Functions on arrays over states: the way for batches."""
 
-    sqrt, sin, cos, atan2 = np.sqrt, np.sin, np.cos, np.arctan2
+    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
 
 _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
@@ -694,8 +838,8 @@ _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 def _evaluate(plan, p, **vectors):
     """Arrays of a plan at the vectors that it reads."""
-    p = _DEFAULT if p is None else p
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors.values()))
+    p = _given(p)
+    lead = _lead(**vectors)
     chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
     return _run(plan, p, *chosen)
 
@@ -1197,7 +1341,7 @@ def _dynamics_rrr(c, k, x, s, f):
 
 
 def _dynamics_after(c, s, t, f):
-    J_star_t_10, m_star = c
+    J_star_t_14, m_star = c
     h_star_in_base_x, h_star_in_base_y, Z_p_x, Z_p_y, Z_q_t = s
     (
     total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
@@ -1212,7 +1356,7 @@ def _dynamics_after(c, s, t, f):
     M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz
+    M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz
     # (M5) translational part of Z
     Z_t_x = Z_p_x + total_prrr_x + total_rrr_x
     Z_t_y = Z_p_y + total_prrr_y + total_rrr_y
@@ -1467,7 +1611,7 @@ def _M_rrr(c, k, x, s, f):
 
 
 def _M_after(c, s, t, f):
-    J_star_t_10, m_star = c
+    J_star_t_14, m_star = c
     h_star_in_base_x, h_star_in_base_y = s
     (
     total_prrr_xx, total_prrr_xy, total_prrr_yy, total_prrr_xz, total_prrr_yz, total_prrr_zz,
@@ -1481,7 +1625,7 @@ def _M_after(c, s, t, f):
     M_ta_xz = total_prrr_xz + total_rrr_xz - h_star_in_base_y
     M_ta_yz = h_star_in_base_x - total_prrr_yz - total_rrr_yz
     # (M3) rotational block of M
-    M_aa_zz = -J_star_t_10 - total_prrr_zz - total_rrr_zz
+    M_aa_zz = -J_star_t_14 - total_prrr_zz - total_rrr_zz
     ok = True
     return (
     ok, (M_tt_xx, M_tt_xy, M_tt_xy, M_tt_yy, M_ta_xz, M_ta_xz, M_ta_yz, M_ta_yz, M_aa_zz,),
@@ -3245,7 +3389,7 @@ def _potential_prrr(c, k, x, s, f):
     s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
     # (V1) potential energy
     potential_t_5 = b_prrr_r0_x + y_1_extra_prrr
-    # (prrr-G6) first moment of link 3 about the connection point
+    # (prrr-G7) first moment of link 3 about the connection point
     h_3_prrr_r0_x = c_3_prrr*h_3_prrr_x + h_3_prrr_y*s_3_prrr
     h_3_prrr_r0_y = c_3_prrr*h_3_prrr_y - h_3_prrr_x*s_3_prrr
     # (V1) potential energy
@@ -3322,6 +3466,195 @@ def _potential_after(c, s, t, f):
     return (ok, (potential,),)
 
 
+# condition: 156 mul, 86 add, 6 div, 7 sqrt, 0 trig
+def _condition_before(c, X, f):
+    sin = f.sin
+    cos = f.cos
+    legs_size, = c
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    R_xx = cos(X_2)
+    R_yx = sin(X_2)
+    ok = True
+    return (ok, (t_x, t_y, R_xx, R_yx,), (legs_size,),)
+
+
+def _condition_prrr(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y = c
+    (
+    Kd_2_prrr_t_2, Kd_2_prrr_t_3, branch_2_prrr, inv_Kd_2_prrr_t, inv_rho2_2_prrr_t_4,
+        inv_size_prrr, inv_uu_3_prrr_t, prrr_base_frame_xx, prrr_base_frame_xy,
+        prrr_base_frame_yx, prrr_base_frame_yy, prrr_base_point_x, prrr_base_point_y,
+        prrr_joint3_offset_x, prrr_platform_joint_offset_x, prrr_platform_point_x,
+        prrr_platform_point_y, rho2_2_prrr_t, size_prrr,
+    ) = k
+    y_1_extra_prrr, = x
+    t_x, t_y, R_xx, R_yx = s
+    # (prrr-K1) from the base point to the connection point
+    q_prrr_in_base_x = R_xx*prrr_platform_point_x - R_yx*prrr_platform_point_y
+    q_prrr_in_base_y = R_xx*prrr_platform_point_y + R_yx*prrr_platform_point_x
+    S_prrr_x = q_prrr_in_base_x + t_x - prrr_base_point_x
+    S_prrr_y = q_prrr_in_base_y + t_y - prrr_base_point_y
+    S_prrr_r0_y = -S_prrr_x*prrr_base_frame_xx - S_prrr_y*prrr_base_frame_yx
+    # (prrr-K2) from the origin of joint 2 to the connection point
+    x_2_prrr_x = S_prrr_x*prrr_base_frame_xy + S_prrr_y*prrr_base_frame_yy - y_1_extra_prrr
+    # (prrr-K3) projection on the centre's direction, from the distance fixed by the joints beyond joint 2
+    Kd_2_prrr_t = S_prrr_r0_y*S_prrr_r0_y + x_2_prrr_x*x_2_prrr_x
+    Kd_2_prrr = 0.5*Kd_2_prrr_t + Kd_2_prrr_t_2 - Kd_2_prrr_t_3
+    # (prrr-K7) factor of the cosine in the equation of joint 2
+    Kc_2_prrr = prrr_joint3_offset_x*x_2_prrr_x
+    # (prrr-K8) factor of the sine in the equation of joint 2
+    Ks_2_prrr = S_prrr_r0_y*prrr_joint3_offset_x
+    # (prrr-K9) squared amplitude
+    rho2_2_prrr = Kc_2_prrr*Kc_2_prrr + Ks_2_prrr*Ks_2_prrr
+    # (prrr-K10) discriminant
+    disc_2_prrr = rho2_2_prrr - Kd_2_prrr*Kd_2_prrr
+    # (prrr-K11) root, with the sign of the branch
+    root_2_prrr = branch_2_prrr*sqrt(disc_2_prrr)
+    # (prrr-K17) from the origin of joint 3 to the connection point
+    x_3_prrr_x = Kd_2_prrr*inv_Kd_2_prrr_t*prrr_joint3_offset_x - prrr_joint3_offset_x
+    # (prrr-K19) cosine of the angle of joint 3 from its reference direction
+    c_3_prrr = inv_uu_3_prrr_t*prrr_platform_joint_offset_x*x_3_prrr_x
+    # (prrr-K20) sine of the angle of joint 3 from its reference direction
+    s_3_prrr = (
+    inv_Kd_2_prrr_t*inv_uu_3_prrr_t*prrr_joint3_offset_x*prrr_platform_joint_offset_x*root_2_prrr
+    )
+    # (prrr-V2) from joint 2 to the connection point, along the links
+    r_2_prrr_x = prrr_joint3_offset_x + c_3_prrr*prrr_platform_joint_offset_x
+    r_2_prrr_r0_y = r_2_prrr_x*s_3_prrr - c_3_prrr*prrr_platform_joint_offset_x*s_3_prrr
+    # (prrr-K12) cosine of the angle of joint 2 from its reference direction
+    inv_rho2_2_prrr = 1.0/rho2_2_prrr
+    c_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*Kd_2_prrr - Ks_2_prrr*root_2_prrr)
+    # (prrr-K13) sine of the angle of joint 2 from its reference direction
+    s_2_prrr = inv_rho2_2_prrr*(Kc_2_prrr*root_2_prrr + Kd_2_prrr*Ks_2_prrr)
+    # (prrr-V5) reciprocal vector 1
+    axis_y_prrr_axes3_r1_x = c_2_prrr*s_3_prrr - c_3_prrr*s_2_prrr
+    axis_y_prrr_axes3_r1_y = c_2_prrr*c_3_prrr + s_2_prrr*s_3_prrr
+    inv_r_2_prrr_r0_y = 1.0/r_2_prrr_r0_y
+    # (prrr-A10) coefficient of the acceleration in: acceleration of joint 2
+    d1_qdd_2_prrr = axis_y_prrr_axes3_r1_y*inv_r_2_prrr_r0_y
+    # (prrr-V5) reciprocal vector 1
+    w_2_prrr_t = (
+    inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_yy -
+        axis_y_prrr_axes3_r1_y*prrr_base_frame_yx)
+    )
+    w_2_prrr_t_2 = (
+    inv_r_2_prrr_r0_y*(axis_y_prrr_axes3_r1_x*prrr_base_frame_xy -
+        axis_y_prrr_axes3_r1_y*prrr_base_frame_xx)
+    )
+    # (M9) moment of the column's unit force about the platform origin
+    H_a_2_prrr_z = q_prrr_in_base_x*w_2_prrr_t_2 + q_prrr_in_base_y*w_2_prrr_t
+    # (C2) rms distance of the platform points from their centroid
+    spread_t = b_c_x - prrr_platform_point_x
+    spread_t_2 = b_c_y - prrr_platform_point_y
+    spread_t_3 = spread_t*spread_t + spread_t_2*spread_t_2
+    # (prrr-K9) squared amplitude
+    pivot_size = abs(rho2_2_prrr)
+    # (prrr-V5) reciprocal vector 1
+    pivot_size_2 = abs(r_2_prrr_r0_y)
+    # (prrr-N50) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots = least(sqrt(inv_rho2_2_prrr_t_4*pivot_size), inv_size_prrr*pivot_size_2)
+    ok = (abs(rho2_2_prrr) > _TOLERANCE * _TOLERANCE * rho2_2_prrr_t) & (disc_2_prrr >= 0.0) & (abs(-r_2_prrr_r0_y) > _TOLERANCE * size_prrr)
+    return (
+    ok, (spread_t_3,), (1.0, -w_2_prrr_t, w_2_prrr_t_2, H_a_2_prrr_z, d1_qdd_2_prrr, least_pivots,
+        disc_2_prrr,),
+    )
+
+
+def _condition_rrr(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y = c
+    (
+    Kd_1_rrr_t_2, Kd_1_rrr_t_3, branch_1_rrr, inv_Kd_1_rrr_t_5, inv_rho2_1_rrr_t_4, inv_size_rrr,
+        inv_uu_2_rrr_t, rho2_1_rrr_t, rrr_base_frame_xx, rrr_base_frame_xy, rrr_base_frame_yx,
+        rrr_base_frame_yy, rrr_base_point_x, rrr_base_point_y, rrr_joint2_offset_x,
+        rrr_platform_joint_offset_x, rrr_platform_point_x, rrr_platform_point_y, size_rrr,
+    ) = k
+    t_x, t_y, R_xx, R_yx = s
+    # (rrr-K1) from the base point to the connection point
+    q_rrr_in_base_x = R_xx*rrr_platform_point_x - R_yx*rrr_platform_point_y
+    q_rrr_in_base_y = R_xx*rrr_platform_point_y + R_yx*rrr_platform_point_x
+    S_rrr_x = q_rrr_in_base_x + t_x - rrr_base_point_x
+    S_rrr_y = q_rrr_in_base_y + t_y - rrr_base_point_y
+    # (rrr-K2) projection on the centre's direction, from the distance fixed by the joints beyond joint 1
+    Kd_1_rrr_t = S_rrr_x*S_rrr_x + S_rrr_y*S_rrr_y
+    Kd_1_rrr = 0.5*Kd_1_rrr_t + Kd_1_rrr_t_2 - Kd_1_rrr_t_3
+    # (rrr-K3) component along the reference direction
+    px_1_rrr = S_rrr_x*rrr_base_frame_xx + S_rrr_y*rrr_base_frame_yx
+    # (rrr-K6) factor of the cosine in the equation of joint 1
+    Kc_1_rrr = px_1_rrr*rrr_joint2_offset_x
+    # (rrr-K4) component across the reference direction
+    py_1_rrr = S_rrr_x*rrr_base_frame_xy + S_rrr_y*rrr_base_frame_yy
+    # (rrr-K7) factor of the sine in the equation of joint 1
+    Ks_1_rrr = py_1_rrr*rrr_joint2_offset_x
+    # (rrr-K8) squared amplitude
+    rho2_1_rrr = Kc_1_rrr*Kc_1_rrr + Ks_1_rrr*Ks_1_rrr
+    # (rrr-K9) discriminant
+    disc_1_rrr = rho2_1_rrr - Kd_1_rrr*Kd_1_rrr
+    # (rrr-K10) root, with the sign of the branch
+    root_1_rrr = branch_1_rrr*sqrt(disc_1_rrr)
+    # (rrr-K16) from the origin of joint 2 to the connection point
+    x_2_rrr_x = Kd_1_rrr*inv_Kd_1_rrr_t_5*rrr_joint2_offset_x - rrr_joint2_offset_x
+    # (rrr-K18) cosine of the angle of joint 2 from its reference direction
+    c_2_rrr = inv_uu_2_rrr_t*rrr_platform_joint_offset_x*x_2_rrr_x
+    # (rrr-K19) sine of the angle of joint 2 from its reference direction
+    s_2_rrr = (
+    inv_Kd_1_rrr_t_5*inv_uu_2_rrr_t*root_1_rrr*rrr_joint2_offset_x*rrr_platform_joint_offset_x
+    )
+    # (rrr-V2) from joint 1 to the connection point, along the links
+    r_1_rrr_x = rrr_joint2_offset_x + c_2_rrr*rrr_platform_joint_offset_x
+    r_1_rrr_r0_y = r_1_rrr_x*s_2_rrr - c_2_rrr*rrr_platform_joint_offset_x*s_2_rrr
+    # (rrr-K11) cosine of the angle of joint 1 from its reference direction
+    inv_rho2_1_rrr = 1.0/rho2_1_rrr
+    c_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*Kd_1_rrr - Ks_1_rrr*root_1_rrr)
+    # (rrr-K12) sine of the angle of joint 1 from its reference direction
+    s_1_rrr = inv_rho2_1_rrr*(Kc_1_rrr*root_1_rrr + Kd_1_rrr*Ks_1_rrr)
+    # (rrr-V5) reciprocal vector 1
+    axis_y_rrr_axes2_r1_x = c_1_rrr*s_2_rrr - c_2_rrr*s_1_rrr
+    axis_y_rrr_axes2_r1_y = c_1_rrr*c_2_rrr + s_1_rrr*s_2_rrr
+    inv_r_1_rrr_r0_y = 1.0/r_1_rrr_r0_y
+    w_1_rrr_t = (
+    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_yx +
+        axis_y_rrr_axes2_r1_y*rrr_base_frame_yy)
+    )
+    w_1_rrr_t_2 = (
+    inv_r_1_rrr_r0_y*(axis_y_rrr_axes2_r1_x*rrr_base_frame_xx +
+        axis_y_rrr_axes2_r1_y*rrr_base_frame_xy)
+    )
+    # (M10) moment of the column's unit force about the platform origin
+    H_a_1_rrr_z = q_rrr_in_base_x*w_1_rrr_t_2 + q_rrr_in_base_y*w_1_rrr_t
+    # (C2) rms distance of the platform points from their centroid
+    spread_t_4 = b_c_x - rrr_platform_point_x
+    spread_t_5 = b_c_y - rrr_platform_point_y
+    spread_t_6 = spread_t_4*spread_t_4 + spread_t_5*spread_t_5
+    # (rrr-K8) squared amplitude
+    pivot_size_3 = abs(rho2_1_rrr)
+    # (rrr-V5) reciprocal vector 1
+    pivot_size_4 = abs(r_1_rrr_r0_y)
+    # (rrr-N30) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots_2 = least(sqrt(inv_rho2_1_rrr_t_4*pivot_size_3), inv_size_rrr*pivot_size_4)
+    ok = (abs(rho2_1_rrr) > _TOLERANCE * _TOLERANCE * rho2_1_rrr_t) & (disc_1_rrr >= 0.0) & (abs(-r_1_rrr_r0_y) > _TOLERANCE * size_rrr)
+    return (
+    ok, (spread_t_6,), (-w_1_rrr_t, w_1_rrr_t_2, H_a_1_rrr_z, least_pivots_2, disc_1_rrr,),
+    )
+
+
+def _condition_after(c, s, t, f):
+    sqrt = f.sqrt
+    total_prrr, total_rrr = t
+    # (C2) rms distance of the platform points from their centroid
+    spread = sqrt(0.3333333333333333*total_prrr + 0.3333333333333333*total_rrr)
+    ok = True
+    return (ok, (spread,),)
+
+
 _DYNAMICS = _Plan(
     inputs=('X', 'V'),
 arrays=(('M', (4, 4)), ('Z', (4,)), ('H', (4, 4))),
@@ -3387,7 +3720,7 @@ arrays=(('M', (4, 4)), ('Z', (4,)), ('H', (4, 4))),
     ),
     after=_Part(
         _dynamics_after,
-('J_star_t_10', 'm_star'),
+('J_star_t_14', 'm_star'),
 (7, 8, 9, 10, 11),
         (
 (0, 0), (0, 1), (0, 4), (0, 5), (0, 2), (0, 8), (0, 6), (0, 9), (0, 10), (1, 0), (1, 1), (1, 2),
@@ -3448,7 +3781,7 @@ arrays=(('M', (4, 4)),),
     ),
     after=_Part(
         _M_after,
-('J_star_t_10', 'm_star'),
+('J_star_t_14', 'm_star'),
 (4, 5),
         (
 (0, 0), (0, 1), (0, 4), (0, 5), (0, 2), (0, 8), (0, 6), (0, 9), (0, 10),
@@ -3867,10 +4200,71 @@ arrays=(('potential', (1,)),),
         ((0, 0),),
     ),
 )
+_CONDITION = _Plan(
+    inputs=('X',),
+arrays=(('H', (4, 4)), ('lengths', (2,)), ('pivots', (3,)), ('reach', (3,))),
+    before=_Part(
+        _condition_before,
+('legs_size',),
+        None,
+        ((1, 1),),
+    ),
+    legs=(
+        _LegPart(
+            _condition_prrr,
+            "prrr",
+('b_c_x', 'b_c_y'),
+('Kd_2_prrr_t_2', 'Kd_2_prrr_t_3', 'branch_2_prrr', 'inv_Kd_2_prrr_t', 'inv_rho2_2_prrr_t_4',
+            'inv_size_prrr', 'inv_uu_3_prrr_t', 'prrr_base_frame_xx', 'prrr_base_frame_xy',
+            'prrr_base_frame_yx', 'prrr_base_frame_yy', 'prrr_base_point_x', 'prrr_base_point_y',
+            'prrr_joint3_offset_x', 'prrr_platform_joint_offset_x', 'prrr_platform_point_x',
+            'prrr_platform_point_y', 'rho2_2_prrr_t', 'size_prrr'),
+(('X', (3,)),),
+(0, 1, 2, 3),
+            1,
+            (
+(0, (12,)),
+(0, (1,)),
+(0, (5,)),
+(0, (9,)),
+(0, (13,)),
+(2, (0,)),
+(3, (0,)),
+            ),
+        ),
+        _LegPart(
+            _condition_rrr,
+            "rrr",
+('b_c_x', 'b_c_y'),
+('Kd_1_rrr_t_2', 'Kd_1_rrr_t_3', 'branch_1_rrr', 'inv_Kd_1_rrr_t_5', 'inv_rho2_1_rrr_t_4',
+            'inv_size_rrr', 'inv_uu_2_rrr_t', 'rho2_1_rrr_t', 'rrr_base_frame_xx',
+            'rrr_base_frame_xy', 'rrr_base_frame_yx', 'rrr_base_frame_yy', 'rrr_base_point_x',
+            'rrr_base_point_y', 'rrr_joint2_offset_x', 'rrr_platform_joint_offset_x',
+            'rrr_platform_point_x', 'rrr_platform_point_y', 'size_rrr'),
+(),
+(0, 1, 2, 3),
+            1,
+            (
+(0, (2, 3)),
+(0, (6, 7)),
+(0, (10, 11)),
+(2, (1, 2)),
+(3, (1, 2)),
+            ),
+        ),
+    ),
+    after=_Part(
+        _condition_after,
+(),
+(),
+        ((1, 0),),
+    ),
+)
 _DEFAULT = Parameters()
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
 
 
 def _solve(a, b):
@@ -3901,7 +4295,8 @@ def _solve_one(a, b):
         a[i] = [v / size for v in row] + [b[i] / size]
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[best] = a[best], a[k]
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
         if not abs(a[k][k]) > _PIVOT:
             return failure
         head = a[k]
@@ -3922,7 +4317,9 @@ def _solve_block(a, b):
     a = np.concatenate((a, b[:, :, None]), axis=2) / size
     which = np.arange(states)
     for k in range(n):
-        best = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        column = np.abs(a[:, k:, k])
+        best = np.argmax(column, axis=1)
+        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
         a[which, k], a[which, best] = a[which, best], a[which, k].copy()
         good &= np.abs(a[:, k, k]) > _PIVOT
         factor = a[:, k + 1 :, k] / a[:, k, k, None]
@@ -3932,14 +4329,6 @@ def _solve_block(a, b):
         x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
     x[~good] = np.nan
     return x
-
-
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or ValueError."""
-    value = np.asarray(value, dtype=float)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
 
 
 def M(X, p=None):
@@ -3986,35 +4375,46 @@ def _known(array, axes, *inputs):
     return _together(failed, (array, axes))[0]
 
 
-def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
+def _weights(weights):
+    """The weights (..., NU) of the drives."""
+    if weights is None:
+        return np.ones(NU)
+    weights = _vector("inverse_dynamics", "weights", weights, NU)
+    if not np.all((weights > 0.0) & (weights < np.inf)):
+        raise ValueError("inverse_dynamics: weights must be positive and finite")
+    return weights
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
     The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
     """
     X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
     A = _vector("inverse_dynamics", "A", A, NV)
+    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
+    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
     required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - _external("inverse_dynamics", wrench)
+    force = required - external
     return _drive_forces(matrix, rest[0] if rest else None, force, weights)
 
 
-def forward_dynamics(X, V, tau, p=None, wrench=None):
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
     """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench."""
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau = _vector("forward_dynamics", "tau", tau, NU)
+    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
+    _lead(X=X, V=V, tau=tau, wrench=external)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    external = _external("forward_dynamics", wrench)
     with np.errstate(all="ignore"):
         force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _solve(inertia, force)
 
 
-def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
-    """
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
     X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A = _vector("complete_acceleration", "A", A, NV)
-    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
+    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
     return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
@@ -4029,7 +4429,63 @@ def _drive_forces(matrix, directions, force, weights):
 def null_space(X, p=None):
     """Basis (..., NU, 0) of the tau with H tau = 0: empty, the drives are not redundant."""
     X = _vector("null_space", "X", X, NQ)
+    _given(p)
     return np.zeros((*X.shape[:-1], NU, 0))
+
+
+_MOMENT_ROWS = (2,)  # rows of H that are moments
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: sigma (..., 4), legs (..., 3), status (...).
+
+    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
+    rule the rms distance of the platform points from their centroid (where they coincide, the
+    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
+    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
+    converged, as in C; sigma and legs are NaN where it is not 0.
+    """
+    return _condition("condition", X, p, length)
+
+
+def _condition(name, X, p, length, columns=NU):
+    """sigma of the first columns of H, margins of the legs, status codes."""
+    X = _vector(name, "X", X, NQ)
+    p = _DEFAULT if p is None else p
+    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
+        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    lead = X.shape[:-1]
+    vectors = {"X": X.reshape(-1, NQ)}
+    states = len(vectors["X"])
+    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
+    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
+    with np.errstate(all="ignore"):
+        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
+        _run_block(_CONDITION, p, flat, made)
+        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
+        spread, legs_size = found["lengths"].T
+        if length is None:
+            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
+        matrix = found["H"]
+        matrix[:, list(_MOMENT_ROWS)] /= length
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
+        status = np.select(
+            [
+                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
+                ~(found["reach"] >= 0.0).all(axis=1),
+                ~(found["pivots"] > _TOLERANCE).all(axis=1),
+                ~finite,
+            ],
+            [3, 1, 2, 3],
+            0,
+        )
+    good = (status == 0)[:, None]
+    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
+    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
+    return (
+        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
+        status.reshape(lead)[()],
+    )
 
 
 def inverse_kinematics(X, p=None):
@@ -4050,15 +4506,16 @@ def joint_accelerations(X, V, A, p=None):
         _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
 
 
-def leg_reactions(X, V, A, p=None, wrench=None):
+def leg_reactions(X, V, A, p=None, *, wrench=None):
     """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
 
     The drives give the forces of `inverse_dynamics`.
     """
     X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
     A = _vector("leg_reactions", "A", A, NV)
+    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
     forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench)
+    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
     parts = [(tau, drive, _ACTUATOR_LEGS)]
     forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
     for amounts, vectors, legs in parts:
@@ -4070,6 +4527,7 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
+    _lead(X=X, V=V)
     inertia = M(X, p)
     with np.errstate(all="ignore"):
         kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
@@ -4084,8 +4542,8 @@ def forward_kinematics(q_actuated, X0, p=None):
     Extra coordinates that the drives do not determine stay.  NaN where no X is found.
     """
     q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0 = _vector("forward_kinematics", "X0", X0, NQ)
-    lead = np.broadcast_shapes(q_actuated.shape[:-1], X0.shape[:-1])
+    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
+    lead = _lead(q_actuated=q_actuated, X0=X0)
     target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
     X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
     found = [_find_pose(q, x, p) for q, x in zip(target, X)]
@@ -4126,6 +4584,32 @@ def _find_pose(q_actuated, X, p):
     return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
 
 
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
+
+
 def rotation(X):
     """base_R_platform (..., 2, 2) at X (..., NQ)."""
     X = _vector("rotation", "X", X, NQ)
@@ -4134,13 +4618,15 @@ def rotation(X):
     return _known(np.stack((np.stack((c, -s), axis=-1), np.stack((s, c), axis=-1)), axis=-2), 2, X)
 
 
-def pose(t, R):
-    """X of the platform at origin t (..., 2) with rotation R (..., 2, 2); extra coordinates zero."""
-    R, t = np.asarray(R, dtype=float), _vector("pose", "t", t, 2)
-    if R.shape[-2:] != (2, 2):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., 2, 2)")
+def pose(t, R, *, nearest=False):
+    """X of the platform at origin t (..., 2) with rotation R (..., 2, 2); extra coordinates zero.
+
+    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
+    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    """
+    R, t = _rotations(R, 2, nearest), _vector("pose", "t", t, 2)
     phi = np.arctan2(R[..., 1, 0], R[..., 0, 0])[..., None]
-    lead = np.broadcast_shapes(t.shape[:-1], phi.shape[:-1])
+    lead = _lead(t=t, R=phi)
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, phi, np.zeros(NQ - 3))]
     return _known(np.concatenate(parts, axis=-1), 1, R.reshape(*R.shape[:-2], 4))
 
@@ -4148,7 +4634,7 @@ def pose(t, R):
 def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV): V itself."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    return _known(np.array(np.broadcast_to(V, np.broadcast_shapes(X.shape, V.shape))), 1, X)
+    return _known(np.array(np.broadcast_to(V, (*_lead(X=X, V=V), NV))), 1, X)
 
 
 def _moved(X, step):

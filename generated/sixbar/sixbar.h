@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask sixbar_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so sixbar.c refuses them unless SIXBAR_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as SIXBAR_OK.
  */
 #ifndef SIXBAR_H_INCLUDED
 #define SIXBAR_H_INCLUDED
@@ -109,26 +115,26 @@ typedef struct {
 
 /* What depends on the parameters alone; set by sixbar_prepare, then only read. */
 typedef struct {
-    sixbar_real J_star_t_10, J_star_zz, Z_p_t, Z_p_t_2, gravity_x, gravity_y, h_star_x, h_star_y,
-            m_star;
+    sixbar_real J_star_t_14, J_star_zz, Z_p_t, Z_p_t_2, b_c_x, b_c_y, gravity_x, gravity_y, h_star_x,
+            h_star_y, legs_size, m_star;
     /* legs of type rrr */
     sixbar_real J_1_rrr_zz[1], J_2_rrr_zz[1], Jc_1_rrr_zz[1], Kd_1_rrr_t_2[1], Kd_1_rrr_t_3[1],
             b_rrr_r0_x[1], b_rrr_r0_y[1], branch_1_rrr[1], d_Gamma_1_rrr_t[1], d_Gamma_1_rrr_y[1],
             d_c_rrr_yy[1], d_phi_2_rrr_t[1], g_r0_x[1], g_r0_y[1], h_1_rrr_x[1], h_1_rrr_y[1],
-            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rrr_platform_joint_offset_x[1],
-            inv_uu_2_rrr_t[1], rho2_1_rrr_t[1], rrr_base_frame_xx[1], rrr_base_frame_xy[1],
-            rrr_base_frame_yx[1], rrr_base_frame_yy[1], rrr_base_point_x[1], rrr_base_point_y[1],
-            rrr_joint2_offset_x[1], rrr_link1_mass[1], rrr_link2_mass[1],
-            rrr_platform_joint_offset_x[1], rrr_platform_point_x[1], rrr_platform_point_y[1],
-            size_rrr[1];
+            h_2_rrr_x[1], h_2_rrr_y[1], inv_Kd_1_rrr_t_5[1], inv_rho2_1_rrr_t_4[1],
+            inv_rrr_platform_joint_offset_x[1], inv_size_rrr[1], inv_uu_2_rrr_t[1], rho2_1_rrr_t[1],
+            rrr_base_frame_xx[1], rrr_base_frame_xy[1], rrr_base_frame_yx[1], rrr_base_frame_yy[1],
+            rrr_base_point_x[1], rrr_base_point_y[1], rrr_joint2_offset_x[1], rrr_link1_mass[1],
+            rrr_link2_mass[1], rrr_platform_joint_offset_x[1], rrr_platform_point_x[1],
+            rrr_platform_point_y[1], size_rrr[1];
     /* legs of type rrr2 */
     sixbar_real J_1_rrr2_zz[1], J_2_rrr2_zz[1], Jc_1_rrr2_zz[1], Kd_1_rrr2_t_2[1], Kd_1_rrr2_t_3[1],
             b_rrr2_r0_x[1], b_rrr2_r0_y[1], branch_1_rrr2[1], d_Gamma_1_rrr2_t[1],
             d_Gamma_1_rrr2_y[1], d_c_rrr2_yy[1], d_phi_2_rrr2_t[1], g_r0_x_2[1], g_r0_y_2[1],
             h_1_rrr2_x[1], h_1_rrr2_y[1], h_2_rrr2_x[1], h_2_rrr2_y[1], inv_Kd_1_rrr2_t_5[1],
-            inv_rrr2_platform_joint_offset_x[1], inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1],
-            rrr2_base_frame_xx[1], rrr2_base_frame_xy[1], rrr2_base_frame_yx[1],
-            rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
+            inv_rho2_1_rrr2_t_4[1], inv_rrr2_platform_joint_offset_x[1], inv_size_rrr2[1],
+            inv_uu_2_rrr2_t[1], rho2_1_rrr2_t[1], rrr2_base_frame_xx[1], rrr2_base_frame_xy[1],
+            rrr2_base_frame_yx[1], rrr2_base_frame_yy[1], rrr2_base_point_x[1], rrr2_base_point_y[1],
             rrr2_joint2_offset_x[1], rrr2_link1_mass[1], rrr2_link2_mass[1],
             rrr2_platform_joint_offset_x[1], rrr2_platform_point_x[1], rrr2_platform_point_y[1],
             size_rrr2[1];
@@ -138,9 +144,11 @@ extern const sixbar_params sixbar_default_params;
 extern const sixbar_real sixbar_HOME_X[SIXBAR_NQ];
 extern const sixbar_real sixbar_HOME_Q[SIXBAR_NJ];
 
-/* Prepare a model.  SIXBAR_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  SIXBAR_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an izz is negative (other entries of inertias do not
+   count); a frame is no rotation about z or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int sixbar_prepare(const sixbar_params *params, sixbar_model *model);
 
 /* Inertia matrix M. 148 mul, 107 add, 4 div, 2 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -206,12 +214,13 @@ size_t sixbar_forward_dynamics_batch(const sixbar_model *model, size_t n, const 
     const sixbar_real *V, const sixbar_real *tau, const sixbar_real *wrench, sixbar_real *A, int
     *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int sixbar_complete_acceleration(const sixbar_model *model, const sixbar_real *X, const
-    sixbar_real *V, const sixbar_real *A, sixbar_real *completed);
+    sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real *completed);
 size_t sixbar_complete_acceleration_batch(const sixbar_model *model, size_t n, const sixbar_real
-    *X, const sixbar_real *V, const sixbar_real *A, sixbar_real *completed, int *status);
+    *X, const sixbar_real *V, const sixbar_real *A, const sixbar_real *wrench, sixbar_real
+    *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 208 mul, 122 add, 4 div, 2
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -236,11 +245,21 @@ int sixbar_forward_kinematics(const sixbar_model *model, const sixbar_real *q_ac
 size_t sixbar_forward_kinematics_batch(const sixbar_model *model, size_t n, const sixbar_real
     *q_actuated, const sixbar_real *X0, sixbar_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 114 mul, 61 add, 4 div, 5 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (2). */
+int sixbar_condition(const sixbar_model *model, const sixbar_real *X, sixbar_real *sigma,
+    sixbar_real *legs);
+size_t sixbar_condition_batch(const sixbar_model *model, size_t n, const sixbar_real *X,
+    sixbar_real *sigma, sixbar_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (2 x 2). */
 int sixbar_rotation(const sixbar_real *X, sixbar_real *R);
 size_t sixbar_rotation_batch(size_t n, const sixbar_real *X, sixbar_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (2), R (2 x 2). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (2), R (2 x 2). Out: X (NQ). */
 int sixbar_pose(const sixbar_real *t, const sixbar_real *R, sixbar_real *X);
 size_t sixbar_pose_batch(size_t n, const sixbar_real *t, const sixbar_real *R, sixbar_real *X, int
     *status);

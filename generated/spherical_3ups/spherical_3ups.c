@@ -3,6 +3,12 @@
 
 #include "spherical_3ups.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(SPHERICAL_3UPS_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define SPHERICAL_3UPS_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef spherical_3ups_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -286,27 +324,27 @@ const spherical_3ups_real spherical_3ups_HOME_Q[SPHERICAL_3UPS_NJ] = {R(-0.5), R
 static int acceptable(const spherical_3ups_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->fixed_centre[0], 3);
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->fixed_centre[0], 3);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->ups_base_point[0][0], 9);
-    ok &= all_finite(&p->ups_base_frame[0][0][0], 27);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->ups_base_point[0][0], 9);
+    ok &= all_within(&p->ups_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->ups_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->ups_platform_point[0][0], 9);
-    ok &= all_finite(&p->ups_link2_mass[0], 3);
+    ok &= all_within(&p->ups_platform_point[0][0], 9);
+    ok &= all_within(&p->ups_link2_mass[0], 3);
     ok &= none_negative(&p->ups_link2_mass[0], 3);
-    ok &= all_finite(&p->ups_link2_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->ups_link2_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->ups_link2_inertia[0][0][0], 3);
-    ok &= all_finite(&p->ups_link3_mass[0], 3);
+    ok &= all_within(&p->ups_link2_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->ups_link2_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->ups_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->ups_link3_mass[0], 3);
     ok &= none_negative(&p->ups_link3_mass[0], 3);
-    ok &= all_finite(&p->ups_link3_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->ups_link3_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->ups_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->ups_link3_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->ups_link3_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->ups_link3_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -326,6 +364,9 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     real total_ups_y = 0;
     real total_ups_z = 0;
     real total_ups = 0;
+    real total_ups_x_2 = 0;
+    real total_ups_y_2 = 0;
+    real total_ups_z_2 = 0;
     const real fixed_centre_x = params->fixed_centre[0];
     const real fixed_centre_y = params->fixed_centre[1];
     const real fixed_centre_z = params->fixed_centre[2];
@@ -357,12 +398,18 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = R(1.385640646055102)*spread_t;
     model->fixed_centre_x = fixed_centre_x;
     model->fixed_centre_y = fixed_centre_y;
     model->fixed_centre_z = fixed_centre_z;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
+    model->legs_size = legs_size;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real ups_base_point_x = params->ups_base_point[leg][0];
         const real ups_base_point_y = params->ups_base_point[leg][1];
@@ -403,22 +450,17 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         const real branch_1 = signs_branch_1[leg];
         static const signed char signs_branch_2[] = {1, 1, 1};
         const real branch_2 = signs_branch_2[leg];
-        /* (ups-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = ups_base_point_x*ups_base_point_x + ups_base_point_y*ups_base_point_y
-            + ups_base_point_z*ups_base_point_z;
-        const real size_t_2 = ups_platform_point_x*ups_platform_point_x;
-        const real size_t_3 = ups_platform_point_y*ups_platform_point_y;
-        const real size_t_4 = ups_platform_point_z*ups_platform_point_z;
-        const real size_t_5 = size_t_2 + size_t_3 + size_t_4;
-        const real size_t_6 = size_t_ + size_t_5;
-        const real size_ = root(size_t_6);
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t_11 = ups_link3_mass*(size_t_2 - size_t_5);
-        const real J_star_t_12 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y;
-        const real J_star_t_13 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z;
-        const real J_star_t_14 = ups_link3_mass*(size_t_3 - size_t_5);
-        const real J_star_t_15 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
-        const real J_star_t_16 = ups_link3_mass*(size_t_4 - size_t_5);
+        const real J_star_t_11 = ups_platform_point_x*ups_platform_point_x;
+        const real J_star_t_12 = ups_platform_point_y*ups_platform_point_y;
+        const real J_star_t_13 = ups_platform_point_z*ups_platform_point_z;
+        const real J_star_t_14 = J_star_t_11 + J_star_t_12 + J_star_t_13;
+        const real J_star_t_15 = ups_link3_mass*(J_star_t_11 - J_star_t_14);
+        const real J_star_t_16 = ups_link3_mass*ups_platform_point_x*ups_platform_point_y;
+        const real J_star_t_17 = ups_link3_mass*ups_platform_point_x*ups_platform_point_z;
+        const real J_star_t_18 = ups_link3_mass*(J_star_t_12 - J_star_t_14);
+        const real J_star_t_19 = ups_link3_mass*ups_platform_point_y*ups_platform_point_z;
+        const real J_star_t_20 = ups_link3_mass*(J_star_t_13 - J_star_t_14);
         /* (ups-G3) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -504,8 +546,6 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         model->h_3_x[leg] = h_3_x;
         model->h_3_y[leg] = h_3_y;
         model->h_3_z[leg] = h_3_z;
-        model->size_[leg] = size_;
-        model->size_t_6[leg] = size_t_6;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -523,16 +563,19 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
         model->ups_platform_point_x[leg] = ups_platform_point_x;
         model->ups_platform_point_y[leg] = ups_platform_point_y;
         model->ups_platform_point_z[leg] = ups_platform_point_z;
-        total_ups_xx += J_star_t_11;
-        total_ups_xy += J_star_t_12;
-        total_ups_xz += J_star_t_13;
-        total_ups_yy += J_star_t_14;
-        total_ups_yz += J_star_t_15;
-        total_ups_zz += J_star_t_16;
+        total_ups_xx += J_star_t_15;
+        total_ups_xy += J_star_t_16;
+        total_ups_xz += J_star_t_17;
+        total_ups_yy += J_star_t_18;
+        total_ups_yz += J_star_t_19;
+        total_ups_zz += J_star_t_20;
         total_ups_x += h_star_t_4;
         total_ups_y += h_star_t_5;
         total_ups_z += h_star_t_6;
         total_ups += ups_link3_mass;
+        total_ups_x_2 += ups_platform_point_x;
+        total_ups_y_2 += ups_platform_point_y;
+        total_ups_z_2 += ups_platform_point_z;
     }
     /* (L3) inertia tensor about the platform origin */
     const real J_star_xx = platform_inertia_xx - J_star_t_5 - total_ups_xx;
@@ -541,10 +584,10 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real J_star_yy = platform_inertia_yy - J_star_t_8 - total_ups_yy;
     const real J_star_yz = platform_inertia_yz - J_star_t_9 - total_ups_yz;
     const real J_star_zz = platform_inertia_zz - J_star_t_10 - total_ups_zz;
-    const real J_star_t_17 = J_star_xx - J_star_yy;
-    const real J_star_t_18 = R(0.5)*J_star_t_17;
-    const real J_star_t_19 = J_star_xx - J_star_zz;
-    const real J_star_t_20 = R(0.5)*J_star_t_19;
+    const real J_star_t_21 = J_star_xx - J_star_yy;
+    const real J_star_t_22 = R(0.5)*J_star_t_21;
+    const real J_star_t_23 = J_star_xx - J_star_zz;
+    const real J_star_t_24 = R(0.5)*J_star_t_23;
     /* (L2) first moment about the platform origin */
     const real h_star_x = h_star_t + total_ups_x;
     const real h_star_y = h_star_t_2 + total_ups_y;
@@ -555,14 +598,21 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
     const real potential_t = fixed_centre_x*m_star;
     const real potential_t_2 = fixed_centre_y*m_star;
     const real potential_t_3 = fixed_centre_z*m_star;
-    model->J_star_t_18 = J_star_t_18;
-    model->J_star_t_20 = J_star_t_20;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_ups_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_ups_y_2;
+    const real b_c_z = R(0.3333333333333333)*total_ups_z_2;
+    model->J_star_t_22 = J_star_t_22;
+    model->J_star_t_24 = J_star_t_24;
     model->J_star_xx = J_star_xx;
     model->J_star_xy = J_star_xy;
     model->J_star_xz = J_star_xz;
     model->J_star_yy = J_star_yy;
     model->J_star_yz = J_star_yz;
     model->J_star_zz = J_star_zz;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
@@ -577,6 +627,9 @@ int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_m
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -586,23 +639,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -610,6 +660,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -638,47 +689,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -699,7 +753,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -776,9 +830,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -813,8 +869,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -854,6 +910,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define CONVERGED BY_TYPE(1e-4, 1e-9, 1e-9)
@@ -885,8 +964,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     to[0] = c*b[0] + b[3]*a[0] + a[1]*b[2] - a[2]*b[1];
     to[1] = c*b[1] + b[3]*a[1] + a[2]*b[0] - a[0]*b[2];
     to[2] = c*b[2] + b[3]*a[2] + a[0]*b[1] - a[1]*b[0];
@@ -921,8 +1000,8 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real V_0 = V[0*w + k];
         const real V_1 = V[1*w + k];
         const real V_2 = V[2*w + k];
-        const real J_star_t_18 = m->J_star_t_18;
-        const real J_star_t_20 = m->J_star_t_20;
+        const real J_star_t_22 = m->J_star_t_22;
+        const real J_star_t_24 = m->J_star_t_24;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -964,12 +1043,12 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         const real omega_y = V_1;
         const real omega_z = V_2;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy;
-        const real J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
+        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -1022,7 +1101,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1067,8 +1146,6 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -1294,9 +1371,10 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         o->entry[0][k] = H_a_3_x;
         o->entry[1][k] = H_a_3_y;
         o->entry[2][k] = H_a_3_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -1424,8 +1502,8 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real X_1 = X[1*w + k];
         const real X_2 = X[2*w + k];
         const real X_3 = X[3*w + k];
-        const real J_star_t_18 = m->J_star_t_18;
-        const real J_star_t_20 = m->J_star_t_20;
+        const real J_star_t_22 = m->J_star_t_22;
+        const real J_star_t_24 = m->J_star_t_24;
         const real J_star_xx = m->J_star_xx;
         const real J_star_xy = m->J_star_xy;
         const real J_star_xz = m->J_star_xz;
@@ -1455,12 +1533,12 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         const real R_zy = quaternion_wx + quaternion_yz;
         const real R_zz = 1 - quaternion_xx - quaternion_yy;
         /* (L3) inertia tensor about the platform origin */
-        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_18*R_xy;
-        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_18*R_yy;
-        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_18*R_zy;
-        const real J_star_t_4 = J_star_t_20*R_xz - J_star_xz*R_xx;
-        const real J_star_t_5 = J_star_t_20*R_yz - J_star_xz*R_yx;
-        const real J_star_t_6 = J_star_t_20*R_zz - J_star_xz*R_zx;
+        const real J_star_t = J_star_xy*R_xx + J_star_yz*R_xz - J_star_t_22*R_xy;
+        const real J_star_t_2 = J_star_xy*R_yx + J_star_yz*R_yz - J_star_t_22*R_yy;
+        const real J_star_t_3 = J_star_xy*R_zx + J_star_yz*R_zz - J_star_t_22*R_zy;
+        const real J_star_t_4 = J_star_t_24*R_xz - J_star_xz*R_xx;
+        const real J_star_t_5 = J_star_t_24*R_yz - J_star_xz*R_yx;
+        const real J_star_t_6 = J_star_t_24*R_zz - J_star_xz*R_zx;
         const real J_star_t_7 = J_star_t*R_xy - J_star_t_4*R_xz;
         const real J_star_t_8 = 2*J_star_t_7 + J_star_xx;
         const real J_star_t_9 = J_star_t*R_yy + J_star_t_2*R_xy - J_star_t_4*R_yz -
@@ -1488,7 +1566,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_12[k] = J_star_t_12;
         s->J_star_t_13[k] = J_star_t_13;
         s->J_star_t_15[k] = J_star_t_15;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1521,8 +1599,6 @@ INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -1646,9 +1722,10 @@ INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[3][k] = add ? o->sum[3][k] + M_aa_t_9 : M_aa_t_9;  /* total_ups_yy */
         o->sum[4][k] = add ? o->sum[4][k] + M_aa_t_10 : M_aa_t_10;  /* total_ups_yz */
         o->sum[5][k] = add ? o->sum[5][k] + M_aa_t_11 : M_aa_t_11;  /* total_ups_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -1830,7 +1907,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1872,8 +1949,6 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2031,9 +2106,10 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[0][k] = add ? o->sum[0][k] + Z_a_t : Z_a_t;  /* total_ups_x */
         o->sum[1][k] = add ? o->sum[1][k] + Z_a_t_2 : Z_a_t_2;  /* total_ups_y */
         o->sum[2][k] = add ? o->sum[2][k] + Z_a_t_3 : Z_a_t_3;  /* total_ups_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2155,7 +2231,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2178,8 +2254,6 @@ INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_value
         const real fixed_centre_y = m->fixed_centre_y;
         const real fixed_centre_z = m->fixed_centre_z;
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2230,9 +2304,9 @@ INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[0][k] = H_a_3_x;
         o->entry[1][k] = H_a_3_y;
         o->entry[2][k] = H_a_3_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
     }
 }
 
@@ -2387,7 +2461,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2432,8 +2506,6 @@ INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2597,9 +2669,10 @@ INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         o->entry[0][k] = H_a_3_x;
         o->entry[1][k] = H_a_3_y;
         o->entry[2][k] = H_a_3_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2714,7 +2787,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2738,7 +2811,6 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t le
         const real fixed_centre_z = m->fixed_centre_z;
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2786,8 +2858,8 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t le
         o->entry[0][k] = q_1;
         o->entry[1][k] = q_2;
         o->entry[2][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -2893,7 +2965,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2920,8 +2992,6 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, con
         const real fixed_centre_z = m->fixed_centre_z;
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2992,9 +3062,10 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, con
         o->entry[0][k] = qd_1;
         o->entry[1][k] = qd_2;
         o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -3113,7 +3184,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3144,8 +3215,6 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t l
         const real fixed_centre_z = m->fixed_centre_z;
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -3242,9 +3311,10 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = qdd_2;
         o->entry[2][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -3364,7 +3434,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3409,8 +3479,6 @@ INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -3570,9 +3638,10 @@ INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[3][k] = axis_x_x;
         o->entry[4][k] = axis_x_y;
         o->entry[5][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -3674,7 +3743,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_4[k] = potential_t_4;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3710,7 +3779,6 @@ INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_t_6 = m->size_t_6[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -3768,8 +3836,8 @@ INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const
             ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) - (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z
             - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2));
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_5 : potential_t_5;  /* total_ups */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_6) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_6);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -3820,6 +3888,218 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 118 mul, 96 add, 3 div, 13 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES], R_yy[LANES], R_yz[LANES], R_zx[LANES],
+        R_zy[LANES], R_zz[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[4][8], singular[8];
+} condition_results_ups;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real quaternion_norm2 = X_0*X_0 + X_1*X_1 + X_2*X_2 + X_3*X_3;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_0*quaternion_scale;
+        const real quaternion_sy = X_1*quaternion_scale;
+        const real quaternion_sz = X_2*quaternion_scale;
+        const real quaternion_wx = X_3*quaternion_sx;
+        const real quaternion_wy = X_3*quaternion_sy;
+        const real quaternion_wz = X_3*quaternion_sz;
+        const real quaternion_xx = X_0*quaternion_sx;
+        const real quaternion_xy = X_0*quaternion_sy;
+        const real quaternion_xz = X_0*quaternion_sz;
+        const real quaternion_yy = X_1*quaternion_sy;
+        const real quaternion_yz = X_1*quaternion_sz;
+        const real quaternion_zz = X_2*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_ups(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_ups *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real fixed_centre_x = m->fixed_centre_x;
+        const real fixed_centre_y = m->fixed_centre_y;
+        const real fixed_centre_z = m->fixed_centre_z;
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
+        /* (ups-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*ups_platform_point_x + R_xy*ups_platform_point_y +
+            R_xz*ups_platform_point_z;
+        const real q_in_base_y = R_yx*ups_platform_point_x + R_yy*ups_platform_point_y +
+            R_yz*ups_platform_point_z;
+        const real q_in_base_z = R_zx*ups_platform_point_x + R_zy*ups_platform_point_y +
+            R_zz*ups_platform_point_z;
+        const real S_x = fixed_centre_x + q_in_base_x - ups_base_point_x;
+        const real S_y = fixed_centre_y + q_in_base_y - ups_base_point_y;
+        const real S_z = fixed_centre_z + q_in_base_z - ups_base_point_z;
+        /* (ups-K2) component along the reference direction */
+        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
+        /* (ups-K3) component across the reference direction */
+        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
+        /* (ups-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (ups-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
+        /* (ups-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (ups-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        /* (ups-V5) reciprocal vector 1 */
+        const real axis_x_x = S_x*inv_root_2;
+        const real axis_x_y = S_y*inv_root_2;
+        const real axis_x_z = S_z*inv_root_2;
+        /* (M4) moment of the column's unit force about the platform origin */
+        const real H_a_3_x = axis_x_z*q_in_base_y - axis_x_y*q_in_base_z;
+        const real H_a_3_y = axis_x_x*q_in_base_z - axis_x_z*q_in_base_x;
+        const real H_a_3_z = axis_x_y*q_in_base_x - axis_x_x*q_in_base_y;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - ups_platform_point_x;
+        const real spread_t_3 = b_c_y - ups_platform_point_y;
+        const real spread_t_4 = b_c_z - ups_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (ups-K4) squared amplitude */
+        const real pivot_size = magnitude(rho2_1);
+        /* (ups-K13) squared amplitude */
+        const real pivot_size_2 = magnitude(rho2_2);
+        /* (ups-V5) reciprocal vector 1 */
+        const real pivot_size_3 = magnitude(root_1);
+        const real pivot_size_4 = magnitude(root_2);
+        /* (ups-N21) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(lesser(lesser(R(1.25)*root(pivot_size),
+            R(1.25)*root(pivot_size_2)), R(1.25)*pivot_size_3), R(1.25)*pivot_size_4);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_ups */
+        o->entry[0][k] = H_a_3_x;
+        o->entry[1][k] = H_a_3_y;
+        o->entry[2][k] = H_a_3_z;
+        o->entry[3][k] = least_pivots;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void condition_place_ups(size_t w, const condition_results_ups *o, size_t leg, size_t
+    first, real *H, real *pivots, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        pivots[(leg)*w + k] = o->entry[3][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_ups = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_ups);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_ups results_ups;
+    clear(reach, 3*w);
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
+            condition_place_ups(w, &results_ups, leg, 0, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -3899,12 +4179,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int spherical_3ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 3) ? SPHERICAL_3UPS_OK : SPHERICAL_3UPS_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 3, 1, &code, completed);
     return code;
 }
@@ -3955,12 +4236,16 @@ int spherical_3ups_energy(const prepared *m, const real *X, const real *V, real 
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {2, 5, 8};
     real q[9];
     int code = spherical_3ups_inverse_kinematics(m, X, q);
+    if (code != SPHERICAL_3UPS_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -3973,8 +4258,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[9];
     int code = spherical_3ups_H(m, X, H);
-    fill_rows(3, H, gap, a);
     if (code == SPHERICAL_3UPS_OK) {
+        fill_rows(3, H, gap, a);
         least_squares(3, 3, a, step);
     }
     return code;
@@ -3983,7 +4268,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int spherical_3ups_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 3 };
-    real found[4], gap[GAPS], trial[4], next[GAPS], step[3];
+    real found[4], gap[GAPS] = {0}, trial[4] = {0}, next[GAPS] = {0}, step[3] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : SPHERICAL_3UPS_INVALID;
@@ -4012,16 +4297,115 @@ int spherical_3ups_forward_kinematics(const prepared *m, const real *q_actuated,
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    static const size_t moments[] = {0, 1, 2};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(4, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            H[moments[i]*3 + j] /= length;
+        }
+    }
+    check(9, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int spherical_3ups_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[9], a[9], found[3], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != SPHERICAL_3UPS_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(3, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int spherical_3ups_rotation(const real *X, real *R)
 {
-    const real *const p = X + 0;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 4) && n > 0 && is_finite(n) ? SPHERICAL_3UPS_OK : SPHERICAL_3UPS_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 0, p);
+    const int code = all_finite(X, 4) && all_finite(p, 4) ? SPHERICAL_3UPS_OK : SPHERICAL_3UPS_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -4030,11 +4414,8 @@ int spherical_3ups_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[4] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[0 + i] = p[i]/n;
-    }
+    unit(p, found + 0);
     (void)t;
     const int code = all_finite(found, 4) ? SPHERICAL_3UPS_OK : SPHERICAL_3UPS_INVALID;
     deliver(found, 4, 1, &code, X);
@@ -4057,6 +4438,10 @@ int spherical_3ups_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(4, X);
+        return SPHERICAL_3UPS_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -4103,6 +4488,11 @@ size_t spherical_3ups_M_batch(const spherical_3ups_model *model, size_t n, const
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 4*i, M + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_M(model, X + 4*(i + k), M + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4127,6 +4517,11 @@ size_t spherical_3ups_Z_batch(const spherical_3ups_model *model, size_t n, const
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 4*i, V + 3*i, Z + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_Z(model, X + 4*(i + k), V + 3*(i + k), Z + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4151,6 +4546,11 @@ size_t spherical_3ups_H_batch(const spherical_3ups_model *model, size_t n, const
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 4*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_H(model, X + 4*(i + k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4177,6 +4577,12 @@ size_t spherical_3ups_dynamics_batch(const spherical_3ups_model *model, size_t n
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 4*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_dynamics(model, X + 4*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i +
+                    k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4201,6 +4607,11 @@ size_t spherical_3ups_inverse_kinematics_batch(const spherical_3ups_model *model
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 4*i, q + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_inverse_kinematics(model, X + 4*(i + k), q + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4225,6 +4636,11 @@ size_t spherical_3ups_joint_rates_batch(const spherical_3ups_model *model, size_
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 4*i, V + 3*i, rates + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_joint_rates(model, X + 4*(i + k), V + 3*(i + k), rates + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4251,6 +4667,12 @@ size_t spherical_3ups_joint_accelerations_batch(const spherical_3ups_model *mode
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 4*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_joint_accelerations(model, X + 4*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    accelerations + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4279,6 +4701,12 @@ size_t spherical_3ups_inverse_dynamics_batch(const spherical_3ups_model *model, 
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 4*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_inverse_dynamics(model, X + 4*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4307,6 +4735,12 @@ size_t spherical_3ups_forward_dynamics_batch(const spherical_3ups_model *model, 
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 4*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != SPHERICAL_3UPS_OK) {
+                codes[k] = spherical_3ups_forward_dynamics(model, X + 4*(i + k), V + 3*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4319,12 +4753,12 @@ size_t spherical_3ups_forward_dynamics_batch(const spherical_3ups_model *model, 
 
 size_t spherical_3ups_complete_acceleration_batch(const spherical_3ups_model *model, size_t n,
     const spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
-    spherical_3ups_real *completed, int *status)
+    const spherical_3ups_real *wrench, spherical_3ups_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = spherical_3ups_complete_acceleration(model, X + 4*i, V + 3*i, A + 3*i, completed
-            + 3*i);
+        const int code = spherical_3ups_complete_acceleration(model, X + 4*i, V + 3*i, A + 3*i, wrench ?
+            wrench + 3*i : NULL, completed + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4362,6 +4796,17 @@ size_t spherical_3ups_forward_kinematics_batch(const spherical_3ups_model *model
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = spherical_3ups_forward_kinematics(model, q_actuated + 3*i, X0 + 4*i, X + 4*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t spherical_3ups_condition_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, spherical_3ups_real *sigma, spherical_3ups_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = spherical_3ups_condition(model, X + 4*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  spherical_3ups_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask spherical_3ups_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so spherical_3ups.c refuses them unless SPHERICAL_3UPS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as SPHERICAL_3UPS_OK.
  */
 #ifndef SPHERICAL_3UPS_H_INCLUDED
 #define SPHERICAL_3UPS_H_INCLUDED
@@ -85,19 +94,19 @@ typedef struct {
 
 /* What depends on the parameters alone; set by spherical_3ups_prepare, then only read. */
 typedef struct {
-    spherical_3ups_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
-            J_star_yz, J_star_zz, fixed_centre_x, fixed_centre_y, fixed_centre_z, gravity_x,
-            gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, potential_t, potential_t_2,
-            potential_t_3;
+    spherical_3ups_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
+            J_star_yz, J_star_zz, b_c_x, b_c_y, b_c_z, fixed_centre_x, fixed_centre_y, fixed_centre_z,
+            gravity_x, gravity_y, gravity_z, h_star_x, h_star_y, h_star_z, legs_size, potential_t,
+            potential_t_2, potential_t_3, spread_t;
     /* legs of type ups */
     spherical_3ups_real J_group_2_xx[3], J_group_2_xy[3], J_group_2_xz[3], J_group_2_yy[3],
             J_group_2_yz[3], J_group_2_zz[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], b_r0_x[3],
             b_r0_y[3], b_r0_z[3], branch_1[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3],
-            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], size_[3], size_t_6[3],
-            ups_base_frame_xx[3], ups_base_frame_xy[3], ups_base_frame_xz[3], ups_base_frame_yx[3],
-            ups_base_frame_yy[3], ups_base_frame_yz[3], ups_base_frame_zx[3], ups_base_frame_zy[3],
-            ups_base_frame_zz[3], ups_base_point_x[3], ups_base_point_y[3], ups_base_point_z[3],
-            ups_link2_mass[3], ups_link3_mass[3], ups_platform_point_x[3], ups_platform_point_y[3],
+            h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], ups_base_frame_xx[3],
+            ups_base_frame_xy[3], ups_base_frame_xz[3], ups_base_frame_yx[3], ups_base_frame_yy[3],
+            ups_base_frame_yz[3], ups_base_frame_zx[3], ups_base_frame_zy[3], ups_base_frame_zz[3],
+            ups_base_point_x[3], ups_base_point_y[3], ups_base_point_z[3], ups_link2_mass[3],
+            ups_link3_mass[3], ups_platform_point_x[3], ups_platform_point_y[3],
             ups_platform_point_z[3];
 } spherical_3ups_model;
 
@@ -105,9 +114,11 @@ extern const spherical_3ups_params spherical_3ups_default_params;
 extern const spherical_3ups_real spherical_3ups_HOME_X[SPHERICAL_3UPS_NQ];
 extern const spherical_3ups_real spherical_3ups_HOME_Q[SPHERICAL_3UPS_NJ];
 
-/* Prepare a model.  SPHERICAL_3UPS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  SPHERICAL_3UPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int spherical_3ups_prepare(const spherical_3ups_params *params, spherical_3ups_model *model);
 
 /* Inertia matrix M. 411 mul, 264 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -182,14 +193,14 @@ size_t spherical_3ups_forward_dynamics_batch(const spherical_3ups_model *model, 
     spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *tau, const
     spherical_3ups_real *wrench, spherical_3ups_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int spherical_3ups_complete_acceleration(const spherical_3ups_model *model, const
-    spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
-    spherical_3ups_real *completed);
+    spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A, const
+    spherical_3ups_real *wrench, spherical_3ups_real *completed);
 size_t spherical_3ups_complete_acceleration_batch(const spherical_3ups_model *model, size_t n,
     const spherical_3ups_real *X, const spherical_3ups_real *V, const spherical_3ups_real *A,
-    spherical_3ups_real *completed, int *status);
+    const spherical_3ups_real *wrench, spherical_3ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 474 mul, 345 add, 6 div, 6
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -217,13 +228,22 @@ size_t spherical_3ups_forward_kinematics_batch(const spherical_3ups_model *model
     spherical_3ups_real *q_actuated, const spherical_3ups_real *X0, spherical_3ups_real *X, int
     *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 118 mul, 96 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (3). */
+int spherical_3ups_condition(const spherical_3ups_model *model, const spherical_3ups_real *X,
+    spherical_3ups_real *sigma, spherical_3ups_real *legs);
+size_t spherical_3ups_condition_batch(const spherical_3ups_model *model, size_t n, const
+    spherical_3ups_real *X, spherical_3ups_real *sigma, spherical_3ups_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int spherical_3ups_rotation(const spherical_3ups_real *X, spherical_3ups_real *R);
 size_t spherical_3ups_rotation_batch(size_t n, const spherical_3ups_real *X, spherical_3ups_real
     *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (0, or NULL), R (3 x 3). Out: X
-   (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (0, or NULL), R (3 x 3). Out: X (NQ). */
 int spherical_3ups_pose(const spherical_3ups_real *t, const spherical_3ups_real *R,
     spherical_3ups_real *X);
 size_t spherical_3ups_pose_batch(size_t n, const spherical_3ups_real *t, const spherical_3ups_real

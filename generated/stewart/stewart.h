@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  stewart_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask stewart_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so stewart.c refuses them unless STEWART_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as STEWART_OK.
  */
 #ifndef STEWART_H_INCLUDED
 #define STEWART_H_INCLUDED
@@ -83,28 +92,29 @@ typedef struct {
 
 /* What depends on the parameters alone; set by stewart_prepare, then only read. */
 typedef struct {
-    stewart_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    stewart_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type ups */
     stewart_real J_group_2_xx[6], J_group_2_xy[6], J_group_2_xz[6], J_group_2_yy[6], J_group_2_yz[6],
             J_group_2_zz[6], Sigma_2_xx[6], Sigma_2_yy[6], Sigma_2_zz[6], b_r0_x[6], b_r0_y[6],
             b_r0_z[6], branch_1[6], branch_2[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_2_x[6], h_2_y[6],
-            h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], size_[6], size_t_6[6], ups_base_frame_xx[6],
-            ups_base_frame_xy[6], ups_base_frame_xz[6], ups_base_frame_yx[6], ups_base_frame_yy[6],
-            ups_base_frame_yz[6], ups_base_frame_zx[6], ups_base_frame_zy[6], ups_base_frame_zz[6],
-            ups_base_point_x[6], ups_base_point_y[6], ups_base_point_z[6], ups_link2_mass[6],
-            ups_link3_mass[6], ups_platform_point_x[6], ups_platform_point_y[6],
-            ups_platform_point_z[6];
+            h_2_z[6], h_3_x[6], h_3_y[6], h_3_z[6], ups_base_frame_xx[6], ups_base_frame_xy[6],
+            ups_base_frame_xz[6], ups_base_frame_yx[6], ups_base_frame_yy[6], ups_base_frame_yz[6],
+            ups_base_frame_zx[6], ups_base_frame_zy[6], ups_base_frame_zz[6], ups_base_point_x[6],
+            ups_base_point_y[6], ups_base_point_z[6], ups_link2_mass[6], ups_link3_mass[6],
+            ups_platform_point_x[6], ups_platform_point_y[6], ups_platform_point_z[6];
 } stewart_model;
 
 extern const stewart_params stewart_default_params;
 extern const stewart_real stewart_HOME_X[STEWART_NQ];
 extern const stewart_real stewart_HOME_Q[STEWART_NJ];
 
-/* Prepare a model.  STEWART_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  STEWART_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_prepare(const stewart_params *params, stewart_model *model);
 
 /* Inertia matrix M. 795 mul, 609 add, 12 div, 12 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -170,13 +180,13 @@ size_t stewart_forward_dynamics_batch(const stewart_model *model, size_t n, cons
     const stewart_real *V, const stewart_real *tau, const stewart_real *wrench, stewart_real *A,
     int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int stewart_complete_acceleration(const stewart_model *model, const stewart_real *X, const
-    stewart_real *V, const stewart_real *A, stewart_real *completed);
+    stewart_real *V, const stewart_real *A, const stewart_real *wrench, stewart_real *completed);
 size_t stewart_complete_acceleration_batch(const stewart_model *model, size_t n, const
-    stewart_real *X, const stewart_real *V, const stewart_real *A, stewart_real *completed, int
-    *status);
+    stewart_real *X, const stewart_real *V, const stewart_real *A, const stewart_real *wrench,
+    stewart_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 948 mul, 726 add, 12 div,
    12 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -201,11 +211,21 @@ int stewart_forward_kinematics(const stewart_model *model, const stewart_real *q
 size_t stewart_forward_kinematics_batch(const stewart_model *model, size_t n, const stewart_real
     *q_actuated, const stewart_real *X0, stewart_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 235 mul, 192 add, 6 div, 25 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (6). */
+int stewart_condition(const stewart_model *model, const stewart_real *X, stewart_real *sigma,
+    stewart_real *legs);
+size_t stewart_condition_batch(const stewart_model *model, size_t n, const stewart_real *X,
+    stewart_real *sigma, stewart_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int stewart_rotation(const stewart_real *X, stewart_real *R);
 size_t stewart_rotation_batch(size_t n, const stewart_real *X, stewart_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int stewart_pose(const stewart_real *t, const stewart_real *R, stewart_real *X);
 size_t stewart_pose_batch(size_t n, const stewart_real *t, const stewart_real *R, stewart_real *X,
     int *status);

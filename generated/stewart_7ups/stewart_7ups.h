@@ -21,7 +21,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  stewart_7ups_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask stewart_7ups_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so stewart_7ups.c refuses them unless STEWART_7UPS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as STEWART_7UPS_OK.
  */
 #ifndef STEWART_7UPS_H_INCLUDED
 #define STEWART_7UPS_H_INCLUDED
@@ -84,18 +93,18 @@ typedef struct {
 
 /* What depends on the parameters alone; set by stewart_7ups_prepare, then only read. */
 typedef struct {
-    stewart_7ups_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    stewart_7ups_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type ups */
     stewart_7ups_real J_group_2_xx[7], J_group_2_xy[7], J_group_2_xz[7], J_group_2_yy[7],
             J_group_2_yz[7], J_group_2_zz[7], Sigma_2_xx[7], Sigma_2_yy[7], Sigma_2_zz[7], b_r0_x[7],
             b_r0_y[7], b_r0_z[7], branch_1[7], branch_2[7], g_r0_x[7], g_r0_y[7], g_r0_z[7], h_2_x[7],
-            h_2_y[7], h_2_z[7], h_3_x[7], h_3_y[7], h_3_z[7], size_[7], size_t_6[7],
-            ups_base_frame_xx[7], ups_base_frame_xy[7], ups_base_frame_xz[7], ups_base_frame_yx[7],
-            ups_base_frame_yy[7], ups_base_frame_yz[7], ups_base_frame_zx[7], ups_base_frame_zy[7],
-            ups_base_frame_zz[7], ups_base_point_x[7], ups_base_point_y[7], ups_base_point_z[7],
-            ups_link2_mass[7], ups_link3_mass[7], ups_platform_point_x[7], ups_platform_point_y[7],
+            h_2_y[7], h_2_z[7], h_3_x[7], h_3_y[7], h_3_z[7], ups_base_frame_xx[7],
+            ups_base_frame_xy[7], ups_base_frame_xz[7], ups_base_frame_yx[7], ups_base_frame_yy[7],
+            ups_base_frame_yz[7], ups_base_frame_zx[7], ups_base_frame_zy[7], ups_base_frame_zz[7],
+            ups_base_point_x[7], ups_base_point_y[7], ups_base_point_z[7], ups_link2_mass[7],
+            ups_link3_mass[7], ups_platform_point_x[7], ups_platform_point_y[7],
             ups_platform_point_z[7];
 } stewart_7ups_model;
 
@@ -103,9 +112,11 @@ extern const stewart_7ups_params stewart_7ups_default_params;
 extern const stewart_7ups_real stewart_7ups_HOME_X[STEWART_7UPS_NQ];
 extern const stewart_7ups_real stewart_7ups_HOME_Q[STEWART_7UPS_NJ];
 
-/* Prepare a model.  STEWART_7UPS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  STEWART_7UPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_7ups_prepare(const stewart_7ups_params *params, stewart_7ups_model *model);
 
 /* Inertia matrix M. 920 mul, 703 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -195,13 +206,14 @@ int stewart_7ups_null_space(const stewart_7ups_model *model, const stewart_7ups_
 size_t stewart_7ups_null_space_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *X, stewart_7ups_real *basis, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int stewart_7ups_complete_acceleration(const stewart_7ups_model *model, const stewart_7ups_real
-    *X, const stewart_7ups_real *V, const stewart_7ups_real *A, stewart_7ups_real *completed);
+    *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const stewart_7ups_real *wrench,
+    stewart_7ups_real *completed);
 size_t stewart_7ups_complete_acceleration_batch(const stewart_7ups_model *model, size_t n, const
-    stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A,
-    stewart_7ups_real *completed, int *status);
+    stewart_7ups_real *X, const stewart_7ups_real *V, const stewart_7ups_real *A, const
+    stewart_7ups_real *wrench, stewart_7ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 1106 mul, 847 add, 14 div,
    14 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -228,12 +240,22 @@ int stewart_7ups_forward_kinematics(const stewart_7ups_model *model, const stewa
 size_t stewart_7ups_forward_kinematics_batch(const stewart_7ups_model *model, size_t n, const
     stewart_7ups_real *q_actuated, const stewart_7ups_real *X0, stewart_7ups_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 274 mul, 224 add, 7 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (7). */
+int stewart_7ups_condition(const stewart_7ups_model *model, const stewart_7ups_real *X,
+    stewart_7ups_real *sigma, stewart_7ups_real *legs);
+size_t stewart_7ups_condition_batch(const stewart_7ups_model *model, size_t n, const
+    stewart_7ups_real *X, stewart_7ups_real *sigma, stewart_7ups_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int stewart_7ups_rotation(const stewart_7ups_real *X, stewart_7ups_real *R);
 size_t stewart_7ups_rotation_batch(size_t n, const stewart_7ups_real *X, stewart_7ups_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int stewart_7ups_pose(const stewart_7ups_real *t, const stewart_7ups_real *R, stewart_7ups_real
     *X);
 size_t stewart_7ups_pose_batch(size_t n, const stewart_7ups_real *t, const stewart_7ups_real *R,

@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  stewart_7ups_free_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask stewart_7ups_free_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so stewart_7ups_free.c refuses them unless STEWART_7UPS_FREE_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as STEWART_7UPS_FREE_OK.
  */
 #ifndef STEWART_7UPS_FREE_H_INCLUDED
 #define STEWART_7UPS_FREE_H_INCLUDED
@@ -101,27 +110,27 @@ typedef struct {
 
 /* What depends on the parameters alone; set by stewart_7ups_free_prepare, then only read. */
 typedef struct {
-    stewart_7ups_free_real J_star_t_24, J_star_t_26, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
-            J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x,
-            h_star_y, h_star_z, m_star;
+    stewart_7ups_free_real J_star_t_32, J_star_t_34, J_star_xx, J_star_xy, J_star_xz, J_star_yy,
+            J_star_yz, J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y,
+            gravity_z, h_star_x, h_star_y, h_star_z, m_star;
     /* legs of type ups */
     stewart_7ups_free_real J_group_2_ups_xx[6], J_group_2_ups_xy[6], J_group_2_ups_xz[6],
             J_group_2_ups_yy[6], J_group_2_ups_yz[6], J_group_2_ups_zz[6], Sigma_2_ups_xx[6],
             Sigma_2_ups_yy[6], Sigma_2_ups_zz[6], b_ups_r0_x[6], b_ups_r0_y[6], b_ups_r0_z[6],
             branch_1_ups[6], branch_2_ups[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_2_ups_x[6],
-            h_2_ups_y[6], h_2_ups_z[6], h_3_ups_x[6], h_3_ups_y[6], h_3_ups_z[6], size_ups[6],
-            size_ups_t_6[6], ups_base_frame_xx[6], ups_base_frame_xy[6], ups_base_frame_xz[6],
-            ups_base_frame_yx[6], ups_base_frame_yy[6], ups_base_frame_yz[6], ups_base_frame_zx[6],
-            ups_base_frame_zy[6], ups_base_frame_zz[6], ups_base_point_x[6], ups_base_point_y[6],
-            ups_base_point_z[6], ups_link2_mass[6], ups_link3_mass[6], ups_platform_point_x[6],
-            ups_platform_point_y[6], ups_platform_point_z[6];
+            h_2_ups_y[6], h_2_ups_z[6], h_3_ups_x[6], h_3_ups_y[6], h_3_ups_z[6],
+            ups_base_frame_xx[6], ups_base_frame_xy[6], ups_base_frame_xz[6], ups_base_frame_yx[6],
+            ups_base_frame_yy[6], ups_base_frame_yz[6], ups_base_frame_zx[6], ups_base_frame_zy[6],
+            ups_base_frame_zz[6], ups_base_point_x[6], ups_base_point_y[6], ups_base_point_z[6],
+            ups_link2_mass[6], ups_link3_mass[6], ups_platform_point_x[6], ups_platform_point_y[6],
+            ups_platform_point_z[6];
     /* legs of type ups2 */
     stewart_7ups_free_real J_group_2_ups2_xx[1], J_group_2_ups2_xy[1], J_group_2_ups2_xz[1],
             J_group_2_ups2_yy[1], J_group_2_ups2_yz[1], J_group_2_ups2_zz[1], Sigma_2_ups2_xx[1],
             Sigma_2_ups2_yy[1], Sigma_2_ups2_zz[1], b_ups2_r0_x[1], b_ups2_r0_y[1], b_ups2_r0_z[1],
             branch_1_ups2[1], branch_2_ups2[1], g_r0_x_2[1], g_r0_y_2[1], g_r0_z_2[1], h_2_ups2_x[1],
-            h_2_ups2_y[1], h_2_ups2_z[1], h_3_ups2_x[1], h_3_ups2_y[1], h_3_ups2_z[1], size_ups2[1],
-            size_ups2_t_6[1], ups2_base_frame_xx[1], ups2_base_frame_xy[1], ups2_base_frame_xz[1],
+            h_2_ups2_y[1], h_2_ups2_z[1], h_3_ups2_x[1], h_3_ups2_y[1], h_3_ups2_z[1],
+            ups2_base_frame_xx[1], ups2_base_frame_xy[1], ups2_base_frame_xz[1],
             ups2_base_frame_yx[1], ups2_base_frame_yy[1], ups2_base_frame_yz[1],
             ups2_base_frame_zx[1], ups2_base_frame_zy[1], ups2_base_frame_zz[1], ups2_base_point_x[1],
             ups2_base_point_y[1], ups2_base_point_z[1], ups2_link2_mass[1], ups2_link3_mass[1],
@@ -132,9 +141,11 @@ extern const stewart_7ups_free_params stewart_7ups_free_default_params;
 extern const stewart_7ups_free_real stewart_7ups_free_HOME_X[STEWART_7UPS_FREE_NQ];
 extern const stewart_7ups_free_real stewart_7ups_free_HOME_Q[STEWART_7UPS_FREE_NJ];
 
-/* Prepare a model.  STEWART_7UPS_FREE_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  STEWART_7UPS_FREE_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_7ups_free_prepare(const stewart_7ups_free_params *params, stewart_7ups_free_model *model);
 
 /* Inertia matrix M. 920 mul, 724 add, 14 div, 14 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -211,14 +222,15 @@ size_t stewart_7ups_free_forward_dynamics_batch(const stewart_7ups_free_model *m
     const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real
     *tau, const stewart_7ups_free_real *wrench, stewart_7ups_free_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int stewart_7ups_free_complete_acceleration(const stewart_7ups_free_model *model, const
     stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const stewart_7ups_free_real *A,
-    stewart_7ups_free_real *completed);
+    const stewart_7ups_free_real *wrench, stewart_7ups_free_real *completed);
 size_t stewart_7ups_free_complete_acceleration_batch(const stewart_7ups_free_model *model, size_t
     n, const stewart_7ups_free_real *X, const stewart_7ups_free_real *V, const
-    stewart_7ups_free_real *A, stewart_7ups_free_real *completed, int *status);
+    stewart_7ups_free_real *A, const stewart_7ups_free_real *wrench, stewart_7ups_free_real
+    *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 1106 mul, 847 add, 14 div,
    14 sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -248,12 +260,23 @@ size_t stewart_7ups_free_forward_kinematics_batch(const stewart_7ups_free_model 
     const stewart_7ups_free_real *q_actuated, const stewart_7ups_free_real *X0,
     stewart_7ups_free_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 266 mul, 222 add, 6 div, 29 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (7). */
+int stewart_7ups_free_condition(const stewart_7ups_free_model *model, const stewart_7ups_free_real
+    *X, stewart_7ups_free_real *sigma, stewart_7ups_free_real *legs);
+size_t stewart_7ups_free_condition_batch(const stewart_7ups_free_model *model, size_t n, const
+    stewart_7ups_free_real *X, stewart_7ups_free_real *sigma, stewart_7ups_free_real *legs, int
+    *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int stewart_7ups_free_rotation(const stewart_7ups_free_real *X, stewart_7ups_free_real *R);
 size_t stewart_7ups_free_rotation_batch(size_t n, const stewart_7ups_free_real *X,
     stewart_7ups_free_real *R, int *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int stewart_7ups_free_pose(const stewart_7ups_free_real *t, const stewart_7ups_free_real *R,
     stewart_7ups_free_real *X);
 size_t stewart_7ups_free_pose_batch(size_t n, const stewart_7ups_free_real *t, const

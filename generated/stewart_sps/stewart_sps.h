@@ -22,7 +22,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  stewart_sps_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask stewart_sps_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so stewart_sps.c refuses them unless STEWART_SPS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as STEWART_SPS_OK.
  */
 #ifndef STEWART_SPS_H_INCLUDED
 #define STEWART_SPS_H_INCLUDED
@@ -85,14 +94,14 @@ typedef struct {
 
 /* What depends on the parameters alone; set by stewart_sps_prepare, then only read. */
 typedef struct {
-    stewart_sps_real J_star_t_18, J_star_t_20, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    stewart_sps_real J_star_t_22, J_star_t_24, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type urps */
     stewart_sps_real J_group_3_xx[6], J_group_3_xy[6], J_group_3_xz[6], J_group_3_yy[6],
             J_group_3_yz[6], J_group_3_zz[6], Sigma_3_xx[6], Sigma_3_yy[6], Sigma_3_zz[6], b_r0_x[6],
             b_r0_y[6], b_r0_z[6], branch_1[6], branch_2[6], g_r0_x[6], g_r0_y[6], g_r0_z[6], h_3_x[6],
-            h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6], size_t_6[6], urps_base_frame_xx[6],
+            h_3_y[6], h_3_z[6], h_4_x[6], h_4_y[6], h_4_z[6], urps_base_frame_xx[6],
             urps_base_frame_xy[6], urps_base_frame_xz[6], urps_base_frame_yx[6],
             urps_base_frame_yy[6], urps_base_frame_yz[6], urps_base_frame_zx[6],
             urps_base_frame_zy[6], urps_base_frame_zz[6], urps_base_point_x[6], urps_base_point_y[6],
@@ -104,9 +113,11 @@ extern const stewart_sps_params stewart_sps_default_params;
 extern const stewart_sps_real stewart_sps_HOME_X[STEWART_SPS_NQ];
 extern const stewart_sps_real stewart_sps_HOME_Q[STEWART_SPS_NJ];
 
-/* Prepare a model.  STEWART_SPS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  STEWART_SPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int stewart_sps_prepare(const stewart_sps_params *params, stewart_sps_model *model);
 
 /* Inertia matrix M. 1227 mul, 849 add, 18 div, 12 sqrt, 12 trig. In: X (NQ). Out: M (NV x NV). */
@@ -177,13 +188,14 @@ size_t stewart_sps_forward_dynamics_batch(const stewart_sps_model *model, size_t
     stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *tau, const
     stewart_sps_real *wrench, stewart_sps_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A with the entries of passive extra coordinates taken from their own rows, on which nothing
+   else acts. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int stewart_sps_complete_acceleration(const stewart_sps_model *model, const stewart_sps_real *X,
-    const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real *completed);
+    const stewart_sps_real *V, const stewart_sps_real *A, const stewart_sps_real *wrench,
+    stewart_sps_real *completed);
 size_t stewart_sps_complete_acceleration_batch(const stewart_sps_model *model, size_t n, const
-    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, stewart_sps_real
-    *completed, int *status);
+    stewart_sps_real *X, const stewart_sps_real *V, const stewart_sps_real *A, const
+    stewart_sps_real *wrench, stewart_sps_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 1218 mul, 906 add, 18 div,
    12 sqrt, 12 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL).
@@ -210,13 +222,23 @@ int stewart_sps_forward_kinematics(const stewart_sps_model *model, const stewart
 size_t stewart_sps_forward_kinematics_batch(const stewart_sps_model *model, size_t n, const
     stewart_sps_real *q_actuated, const stewart_sps_real *X0, stewart_sps_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 283 mul, 192 add, 6 div, 25 sqrt, 12 trig; the singular values apart. In: X (NQ). Out:
+   sigma (6), legs (6). */
+int stewart_sps_condition(const stewart_sps_model *model, const stewart_sps_real *X,
+    stewart_sps_real *sigma, stewart_sps_real *legs);
+size_t stewart_sps_condition_batch(const stewart_sps_model *model, size_t n, const
+    stewart_sps_real *X, stewart_sps_real *sigma, stewart_sps_real *legs, int *status);
+
 /* base_R_platform; a quaternion need not be normalised. In: X (NQ). Out: R (3 x 3). */
 int stewart_sps_rotation(const stewart_sps_real *X, stewart_sps_real *R);
 size_t stewart_sps_rotation_batch(size_t n, const stewart_sps_real *X, stewart_sps_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R; extra coordinates zero. In: t (3), R (3 x
-   3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R; extra coordinates zero. INVALID where R
+   has not orthonormal rows, to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3).
+   Out: X (NQ). */
 int stewart_sps_pose(const stewart_sps_real *t, const stewart_sps_real *R, stewart_sps_real *X);
 size_t stewart_sps_pose_batch(size_t n, const stewart_sps_real *t, const stewart_sps_real *R,
     stewart_sps_real *X, int *status);

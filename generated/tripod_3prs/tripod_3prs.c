@@ -3,6 +3,12 @@
 
 #include "tripod_3prs.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(TRIPOD_3PRS_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define TRIPOD_3PRS_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef tripod_3prs_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -290,29 +328,29 @@ const tripod_3prs_real tripod_3prs_HOME_Q[TRIPOD_3PRS_NJ] = {R(0.2), R(0.45), R(
 static int acceptable(const tripod_3prs_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->prs_base_point[0][0], 9);
-    ok &= all_finite(&p->prs_base_frame[0][0][0], 27);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->prs_base_point[0][0], 9);
+    ok &= all_within(&p->prs_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->prs_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->prs_platform_point[0][0], 9);
-    ok &= all_finite(&p->prs_platform_joint_offset[0][0], 9);
+    ok &= all_within(&p->prs_platform_point[0][0], 9);
+    ok &= all_within(&p->prs_platform_joint_offset[0][0], 9);
     ok &= all_zero(&p->prs_platform_joint_offset[0][0] + 1, 3, 3);
     ok &= all_zero(&p->prs_platform_joint_offset[0][0] + 2, 3, 3);
-    ok &= all_finite(&p->prs_link1_mass[0], 3);
+    ok &= all_within(&p->prs_link1_mass[0], 3);
     ok &= none_negative(&p->prs_link1_mass[0], 3);
-    ok &= all_finite(&p->prs_link1_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->prs_link1_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->prs_link1_inertia[0][0][0], 3);
-    ok &= all_finite(&p->prs_link2_mass[0], 3);
+    ok &= all_within(&p->prs_link1_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->prs_link1_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->prs_link1_inertia[0][0][0], 3);
+    ok &= all_within(&p->prs_link2_mass[0], 3);
     ok &= none_negative(&p->prs_link2_mass[0], 3);
-    ok &= all_finite(&p->prs_link2_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->prs_link2_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->prs_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->prs_link2_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->prs_link2_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->prs_link2_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -322,6 +360,10 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return TRIPOD_3PRS_INVALID;
     }
+    real total_prs_x = 0;
+    real total_prs_y = 0;
+    real total_prs_z = 0;
+    real total_prs = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -361,6 +403,8 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
     const real Z_p_t_3 = gravity_z*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
     model->J_star_xx = J_star_xx;
@@ -379,6 +423,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
     model->platform_mass = platform_mass;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real prs_base_point_x = params->prs_base_point[leg][0];
         const real prs_base_point_y = params->prs_base_point[leg][1];
@@ -409,21 +454,17 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         const real branch_1 = signs_branch_1[leg];
         /* (prs-K6) squared length, across the axis, of the direction fixed in link 2 */
         const real uu_2_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x;
-        /* (prs-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = prs_base_point_x*prs_base_point_x + prs_base_point_y*prs_base_point_y
-            + prs_base_point_z*prs_base_point_z;
-        const real size_t_2 = prs_platform_point_x*prs_platform_point_x +
-            prs_platform_point_y*prs_platform_point_y + prs_platform_point_z*prs_platform_point_z;
-        const real size_t_3 = size_t_ + size_t_2 + uu_2_t;
-        const real size_ = root(size_t_3);
+        /* (prs-G2) length of the leg's lever arms, the measure of what is near singular */
+        const real size_t_ = R(3.5999999999999994e-07) + uu_2_t;
+        const real size_ = root(size_t_);
         /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
-        const real root_2_t = size_*size_*size_t_3;
+        const real root_2_t = size_*size_*size_t_;
         /* (prs-N15) force that accelerates joint 1, per unit */
         const real P_c1_t = prs_link1_mass + prs_link2_mass;
-        /* (prs-G3) first moment of link 2 about the origin of link 2 */
+        /* (prs-G4) first moment of link 2 about the origin of link 2 */
         const real h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass;
         const real h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass;
-        /* (prs-G4) inertia tensor of link 2 about the origin of link 2 */
+        /* (prs-G5) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z;
         const real J_2_t_2 = J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
             prs_link2_centre_of_mass_y*prs_link2_centre_of_mass_y;
@@ -434,7 +475,7 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
             gravity_z*prs_base_frame_zx;
         const real g_r0_y = gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy +
             gravity_z*prs_base_frame_zy;
-        /* (prs-G2) first moment of link 1 about the origin of link 1 */
+        /* (prs-G3) first moment of link 1 about the origin of link 1 */
         const real h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass;
         const real h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass;
         /* (V1) potential energy */
@@ -450,6 +491,10 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
             gravity_z*prs_base_frame_zz)*(b_r0_z*prs_link1_mass + b_r0_z*prs_link2_mass +
             prs_link1_centre_of_mass_z*prs_link1_mass +
             prs_link2_centre_of_mass_z*prs_link2_mass);
+        /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
+        const real inv_root_2_t_2 = 1/root_2_t;
+        /* (prs-V3) reciprocal vector 1 */
+        const real inv_size = 1/size_;
         model->J_2_zz[leg] = J_2_zz;
         model->P_c1_t[leg] = P_c1_t;
         model->b_r0_x[leg] = b_r0_x;
@@ -460,6 +505,8 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         model->h_1_y[leg] = h_1_y;
         model->h_2_x[leg] = h_2_x;
         model->h_2_y[leg] = h_2_y;
+        model->inv_root_2_t_2[leg] = inv_root_2_t_2;
+        model->inv_size[leg] = inv_size;
         model->potential_t[leg] = potential_t;
         model->potential_t_2[leg] = potential_t_2;
         model->potential_t_3[leg] = potential_t_3;
@@ -484,7 +531,21 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
         model->root_2_t[leg] = root_2_t;
         model->size_[leg] = size_;
         model->uu_2_t[leg] = uu_2_t;
+        total_prs_x += prs_platform_point_x;
+        total_prs_y += prs_platform_point_y;
+        total_prs_z += prs_platform_point_z;
+        total_prs += size_t_;
     }
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_prs_x;
+    const real b_c_y = R(0.3333333333333333)*total_prs_y;
+    const real b_c_z = R(0.3333333333333333)*total_prs_z;
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = spread_t*root(total_prs);
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
+    model->legs_size = legs_size;
     return TRIPOD_3PRS_OK;
 }
 
@@ -493,6 +554,9 @@ int tripod_3prs_prepare(const tripod_3prs_params *params, tripod_3prs_model *mod
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -502,23 +566,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -526,6 +587,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -554,47 +616,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -615,7 +680,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -692,9 +757,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -729,8 +796,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -770,6 +837,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define MET BY_TYPE(5e-6, 1e-14, 1e-17)
@@ -802,8 +892,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     for (size_t i = 0; i < 3; ++i) {
         to[i] = X[i] + part*step[i];
     }
@@ -982,7 +1072,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1559,7 +1649,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_14[k] = J_star_t_14;
         s->J_star_t_15[k] = J_star_t_15;
         s->J_star_t_17[k] = J_star_t_17;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2014,7 +2104,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2319,7 +2409,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2511,7 +2601,7 @@ INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2658,7 +2748,7 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2912,7 +3002,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3249,7 +3339,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3444,7 +3534,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3682,7 +3772,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3909,7 +3999,7 @@ INLINE void constraints_before(size_t w, const real *X, constraints_values *s, v
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4093,7 +4183,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4376,7 +4466,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_4[k] = potential_t_4;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4516,6 +4606,261 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
     potential_after(w, s, potential);
 }
 
+/* ---- condition: 211 mul, 144 add, 6 div, 10 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[14][8], unreachable[8], singular[8];
+} condition_results_prs;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_prs(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_prs *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real branch_1 = m->branch_1[i];
+        const real inv_root_2_t_2 = m->inv_root_2_t_2[i];
+        const real inv_size = m->inv_size[i];
+        const real prs_base_frame_xx = m->prs_base_frame_xx[i];
+        const real prs_base_frame_xy = m->prs_base_frame_xy[i];
+        const real prs_base_frame_xz = m->prs_base_frame_xz[i];
+        const real prs_base_frame_yx = m->prs_base_frame_yx[i];
+        const real prs_base_frame_yy = m->prs_base_frame_yy[i];
+        const real prs_base_frame_yz = m->prs_base_frame_yz[i];
+        const real prs_base_frame_zx = m->prs_base_frame_zx[i];
+        const real prs_base_frame_zy = m->prs_base_frame_zy[i];
+        const real prs_base_frame_zz = m->prs_base_frame_zz[i];
+        const real prs_base_point_x = m->prs_base_point_x[i];
+        const real prs_base_point_y = m->prs_base_point_y[i];
+        const real prs_base_point_z = m->prs_base_point_z[i];
+        const real prs_platform_joint_offset_x = m->prs_platform_joint_offset_x[i];
+        const real prs_platform_point_x = m->prs_platform_point_x[i];
+        const real prs_platform_point_y = m->prs_platform_point_y[i];
+        const real prs_platform_point_z = m->prs_platform_point_z[i];
+        const real root_2_t = m->root_2_t[i];
+        const real size_ = m->size_[i];
+        const real uu_2_t = m->uu_2_t[i];
+        /* (prs-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*prs_platform_point_x + R_xy*prs_platform_point_y +
+            R_xz*prs_platform_point_z;
+        const real q_in_base_y = R_yx*prs_platform_point_x + R_yy*prs_platform_point_y +
+            R_yz*prs_platform_point_z;
+        const real q_in_base_z = R_zx*prs_platform_point_x + R_zy*prs_platform_point_y +
+            R_zz*prs_platform_point_z;
+        const real S_x = q_in_base_x + t_x - prs_base_point_x;
+        const real S_y = q_in_base_y + t_y - prs_base_point_y;
+        const real S_z = q_in_base_z + t_z - prs_base_point_z;
+        /* (prs-K2) component along axis 1 */
+        const real px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx;
+        /* (prs-K3) discriminant of the distance equation */
+        const real disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz +
+            S_z*prs_base_frame_zz;
+        const real disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z;
+        const real disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2;
+        /* (prs-K4) displacement of joint 1 */
+        const real q_1_t = branch_1*root(disc_1);
+        /* (prs-K1) from the base point to the connection point */
+        const real S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy;
+        /* (prs-K7) squared amplitude */
+        const real rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t);
+        /* (prs-K9) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/(root(rho2_2));
+        const real c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t;
+        /* (prs-K10) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x;
+        /* (prs-V2) velocity of the connection point per rate of joint 2 */
+        const real v_2_t = c_2*prs_platform_joint_offset_x;
+        /* (prs-V3) reciprocal vector 1 */
+        const real w_1_t = prs_platform_joint_offset_x*s_2/v_2_t;
+        const real _r0_x = -c_2 - s_2*w_1_t;
+        const real _r0_y = c_2*w_1_t - s_2;
+        const real w_1_in_base_x = _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) +
+            _r0_y*(-c_2*prs_base_frame_xy - prs_base_frame_xx*s_2);
+        const real w_1_in_base_y = _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) +
+            _r0_y*(-c_2*prs_base_frame_yy - prs_base_frame_yx*s_2);
+        const real w_1_in_base_z = _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) +
+            _r0_y*(-c_2*prs_base_frame_zy - prs_base_frame_zx*s_2);
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y;
+        const real H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z;
+        const real H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z;
+        const real Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x;
+        const real Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - prs_platform_point_x;
+        const real spread_t_3 = b_c_y - prs_platform_point_y;
+        const real spread_t_4 = b_c_z - prs_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (prs-K8) amplitude: off the manifold the nearest angle is taken */
+        const real pivot_size = magnitude(rho2_2);
+        /* (prs-V3) reciprocal vector 1 */
+        const real pivot_size_2 = magnitude(v_2_t);
+        /* (prs-N29) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(root(inv_root_2_t_2*pivot_size), inv_size*pivot_size_2);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_prs */
+        o->entry[0][k] = w_1_in_base_x;
+        o->entry[1][k] = w_1_in_base_y;
+        o->entry[2][k] = w_1_in_base_z;
+        o->entry[3][k] = H_a_1_x;
+        o->entry[4][k] = H_a_1_y;
+        o->entry[5][k] = H_a_1_z;
+        o->entry[6][k] = prs_base_frame_xz;
+        o->entry[7][k] = prs_base_frame_yz;
+        o->entry[8][k] = prs_base_frame_zz;
+        o->entry[9][k] = Hk_a_1_x;
+        o->entry[10][k] = Hk_a_1_y;
+        o->entry[11][k] = Hk_a_1_z;
+        o->entry[12][k] = least_pivots;
+        o->entry[13][k] = disc_1;
+        o->unreachable[k] = UNLESS(disc_1 >= 0);
+        o->singular[k] = UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*root_2_t) +
+            UNLESS(magnitude(-v_2_t) > TOLERANCE*size_);
+    }
+}
+
+INLINE void condition_place_prs(size_t w, const condition_results_prs *o, size_t leg, size_t
+    first, real *H, real *Hk, real *pivots, real *reach, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        H[(9 + leg)*w + k] = o->entry[3][first + k];
+        H[(12 + leg)*w + k] = o->entry[4][first + k];
+        H[(15 + leg)*w + k] = o->entry[5][first + k];
+        Hk[(leg)*w + k] = o->entry[6][first + k];
+        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
+        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
+        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
+        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
+        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
+        pivots[(leg)*w + k] = o->entry[12][first + k];
+        reach[(leg)*w + k] = o->entry[13][first + k];
+        t->unreachable[k] += o->unreachable[first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_prs = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_prs);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_prs results_prs;
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_prs(m, 0, 1, s, 0, 3, 0, &results_prs);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_prs(w, &results_prs, leg, leg, H, Hk, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_prs.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_prs.sum, 0, sizeof results_prs.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_prs(m, leg, 0, s, 1, w, 1, &results_prs);
+            condition_place_prs(w, &results_prs, leg, 0, H, Hk, pivots, reach, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_prs.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
+}
+
 /* ---- forces and accelerations ---- */
 
 INLINE void inverse_dynamics_any(const prepared *m, size_t w, const real *X, const real *V,
@@ -4608,12 +4953,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int tripod_3prs_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 6) ? TRIPOD_3PRS_OK : TRIPOD_3PRS_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 6, 1, &code, completed);
     return code;
 }
@@ -4671,18 +5017,20 @@ int tripod_3prs_energy(const prepared *m, const real *X, const real *V, real *ki
     return code;
 }
 
-/* Largest residual of the driven joints and constraints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints and constraints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {0, 2, 4};
     real q[6];
     int code = tripod_3prs_inverse_kinematics(m, X, q);
+    if (code != TRIPOD_3PRS_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
-    if (code == TRIPOD_3PRS_OK) {
-        code = tripod_3prs_constraints(m, X, gap + 3);
-    }
+    code = tripod_3prs_constraints(m, X, gap + 3);
     for (size_t i = 3; i < 6; ++i) {
         gap[i] = -gap[i];
     }
@@ -4695,13 +5043,13 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[18];
     int code = tripod_3prs_H(m, X, H);
-    fill_rows(3, H, gap, a);
     real Hk[18];
     if (code == TRIPOD_3PRS_OK) {
         code = tripod_3prs_Hk(m, X, Hk);
     }
-    fill_rows(3, Hk, gap + 3, a + 21);
     if (code == TRIPOD_3PRS_OK) {
+        fill_rows(3, H, gap, a);
+        fill_rows(3, Hk, gap + 3, a + 21);
         least_squares(6, 6, a, step);
     }
     return code;
@@ -4710,7 +5058,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 6 };
-    real found[7], gap[GAPS], trial[7], next[GAPS], step[6];
+    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : TRIPOD_3PRS_INVALID;
@@ -4741,19 +5089,20 @@ int tripod_3prs_forward_kinematics(const prepared *m, const real *q_actuated, co
 
 int tripod_3prs_project(const prepared *m, const real *X, real *projected)
 {
-    real found[7], trial[7], gap[3], step[6];
+    real found[7], trial[7], gap[3], step[6] = {0};
     real a[BIG*(BIG + 1)], Hk[18];
     memcpy(found, X, sizeof found);
     int code = tripod_3prs_constraints(m, found, gap);
     for (int n = 0; n < 50 && code == TRIPOD_3PRS_OK && largest(gap, 3) > MET; ++n) {
         code = tripod_3prs_Hk(m, found, Hk);
-        if (code == TRIPOD_3PRS_OK) {
-            fill_rows(3, Hk, gap, a);
-            least_squares(3, 6, a, step);
-            moved(found, step, -1, trial);
-            memcpy(found, trial, sizeof found);
-            code = tripod_3prs_constraints(m, found, gap);
+        if (code != TRIPOD_3PRS_OK) {
+            break;
         }
+        fill_rows(3, Hk, gap, a);
+        least_squares(3, 6, a, step);
+        moved(found, step, -1, trial);
+        memcpy(found, trial, sizeof found);
+        code = tripod_3prs_constraints(m, found, gap);
         if (!(largest(step, 6) > MET/10)) {
             break;
         }
@@ -4765,16 +5114,144 @@ int tripod_3prs_project(const prepared *m, const real *X, real *projected)
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *Hk, real *pivots)
+{
+    static const size_t moments[] = {3, 4, 5};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(7, 1, X, t->invalid);
+    condition_run(m, 1, X, H, Hk, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            H[moments[i]*3 + j] /= length;
+        }
+        for (size_t j = 0; j < 3; ++j) {
+            Hk[moments[i]*3 + j] /= length;
+        }
+    }
+    check(18, 1, H, t->overflow);
+    check(18, 1, Hk, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int tripod_3prs_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[18], a[18], found[3], pivots[3];
+    real Hk[18];
+    const int code = matrices(m, X, H, Hk, pivots);
+    if (code != TRIPOD_3PRS_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(6, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
+int tripod_3prs_condition_constrained(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[18], a[36], found[6], pivots[3];
+    real Hk[18];
+    const int code = matrices(m, X, H, Hk, pivots);
+    if (code != TRIPOD_3PRS_OK) {
+        refuse(6, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*6 + j] = H[i*3 + j];
+        }
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*6 + 3 + j] = Hk[i*3 + j];
+        }
+    }
+    singular_values(6, 6, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int tripod_3prs_rotation(const real *X, real *R)
 {
-    const real *const p = X + 3;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 7) && n > 0 && is_finite(n) ? TRIPOD_3PRS_OK : TRIPOD_3PRS_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 3, p);
+    const int code = all_finite(X, 7) && all_finite(p, 4) ? TRIPOD_3PRS_OK : TRIPOD_3PRS_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -4783,11 +5260,8 @@ int tripod_3prs_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[7] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[3 + i] = p[i]/n;
-    }
+    unit(p, found + 3);
     memcpy(found, t, 3*sizeof *t);
     const int code = all_finite(found, 7) ? TRIPOD_3PRS_OK : TRIPOD_3PRS_INVALID;
     deliver(found, 7, 1, &code, X);
@@ -4810,6 +5284,10 @@ int tripod_3prs_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(7, X);
+        return TRIPOD_3PRS_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -4855,6 +5333,11 @@ size_t tripod_3prs_M_batch(const tripod_3prs_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_M(model, X + 7*(i + k), M + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4879,6 +5362,11 @@ size_t tripod_3prs_Z_batch(const tripod_3prs_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4902,6 +5390,11 @@ size_t tripod_3prs_H_batch(const tripod_3prs_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 7*i, H + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_H(model, X + 7*(i + k), H + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4926,6 +5419,11 @@ size_t tripod_3prs_Hk_batch(const tripod_3prs_model *model, size_t n, const trip
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Hk_any(model, LANES, X + 7*i, Hk + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4951,6 +5449,12 @@ size_t tripod_3prs_dynamics_batch(const tripod_3prs_model *model, size_t n, cons
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
+                    k), H + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4975,6 +5479,11 @@ size_t tripod_3prs_constraints_batch(const tripod_3prs_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         constraints_any(model, LANES, X + 7*i, residual + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_constraints(model, X + 7*(i + k), residual + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4999,6 +5508,11 @@ size_t tripod_3prs_constraint_bias_batch(const tripod_3prs_model *model, size_t 
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         constraint_bias_any(model, LANES, X + 7*i, V + 6*i, bias + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5023,6 +5537,11 @@ size_t tripod_3prs_inverse_kinematics_batch(const tripod_3prs_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_inverse_kinematics(model, X + 7*(i + k), q + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5047,6 +5566,11 @@ size_t tripod_3prs_joint_rates_batch(const tripod_3prs_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5072,6 +5596,12 @@ size_t tripod_3prs_joint_accelerations_batch(const tripod_3prs_model *model, siz
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
+                    accelerations + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5100,6 +5630,12 @@ size_t tripod_3prs_inverse_dynamics_batch(const tripod_3prs_model *model, size_t
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
             3*i, lambda + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench
+                    ? wrench + 6*(i + k) : NULL, tau + 3*(i + k), lambda + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5128,6 +5664,12 @@ size_t tripod_3prs_forward_dynamics_batch(const tripod_3prs_model *model, size_t
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A +
             6*i, lambda + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3PRS_OK) {
+                codes[k] = tripod_3prs_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k), lambda + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -5139,13 +5681,13 @@ size_t tripod_3prs_forward_dynamics_batch(const tripod_3prs_model *model, size_t
 }
 
 size_t tripod_3prs_complete_acceleration_batch(const tripod_3prs_model *model, size_t n, const
-    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, tripod_3prs_real
-    *completed, int *status)
+    tripod_3prs_real *X, const tripod_3prs_real *V, const tripod_3prs_real *A, const
+    tripod_3prs_real *wrench, tripod_3prs_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3prs_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, completed +
-            6*i);
+        const int code = tripod_3prs_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ?
+            wrench + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -5182,6 +5724,28 @@ size_t tripod_3prs_forward_kinematics_batch(const tripod_3prs_model *model, size
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3prs_forward_kinematics(model, q_actuated + 3*i, X0 + 7*i, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3prs_condition_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *sigma, tripod_3prs_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3prs_condition(model, X + 7*i, sigma + 3*i, legs + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3prs_condition_constrained_batch(const tripod_3prs_model *model, size_t n, const
+    tripod_3prs_real *X, tripod_3prs_real *sigma, tripod_3prs_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3prs_condition_constrained(model, X + 7*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -13,7 +13,14 @@ tau:    leg 1 joint 1, leg 2 joint 1, leg 3 joint 1
 wrench: fx, fy, fz, mx, my, mz
 
 Impossible states (unreachable, singular, not finite) give NaN, in their rows only.
+So do quaternions of length 0, or not from 1.1e-154 to 1.3e154; rotation takes shorter ones too.
+Arguments are made of real numbers: TypeError for complex ones, truth values, text and masked
+arrays, ValueError for wrong shapes.  p, a Parameters of this module, follows what is required, by
+position or keyword; all else is given by keyword.
 """
+
+import warnings
+from numbers import Real
 
 import numpy as np
 
@@ -32,6 +39,8 @@ __all__ = [
     "Parameters",
     "Z",
     "complete_acceleration",
+    "condition",
+    "condition_constrained",
     "constraint_bias",
     "constraints",
     "dynamics",
@@ -57,15 +66,10 @@ NU = 3
 NC = 3
 NW = 6
 NJ = 6
-HOME_X = np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0])
-HOME_Q = np.array([0.2, 0.45, 0.2, 0.45, 0.2, 0.45])
-HOME_X.setflags(write=False)
-HOME_Q.setflags(write=False)
 
-# Lengths below this fraction of a leg's size, and pivots below it, count as zero.
+# Lengths below this fraction of a leg's lever arms, and pivots below it, count as zero.
 _TOLERANCE = 1.4901161193847656e-08  # square root of the machine epsilon
 
-_PER_LEG = ("prs_", )
 _LEGS = {  # positions of the legs of each type
     "prs": (0, 1, 2),
 }
@@ -131,26 +135,30 @@ _DEFAULTS = {
         [[0.00024, 0.0, 0.0], [0.0, 0.03611999999999999, 0.0], [0.0, 0.0, 0.03611999999999999]],
     ],
 }
-_RULES = {  # shape, entries that are zero by structure, what the values must be
-    "gravity": ((3,), (), ""),
-    "platform_mass": ((), (), "mass"),
-    "platform_centre_of_mass": ((3,), (), ""),
-    "platform_inertia": ((3, 3), (), "inertia"),
-    "prs_base_point": ((3, 3), (), ""),
-    "prs_base_frame": ((3, 3, 3), (), "rotation"),
-    "prs_platform_point": ((3, 3), (), ""),
-    "prs_platform_joint_offset": ((3, 3), (1, 2), ""),
-    "prs_link1_mass": ((3,), (), "mass"),
-    "prs_link1_centre_of_mass": ((3, 3), (), ""),
-    "prs_link1_inertia": ((3, 3, 3), (), "inertia"),
-    "prs_link2_mass": ((3,), (), "mass"),
-    "prs_link2_centre_of_mass": ((3, 3), (), ""),
-    "prs_link2_inertia": ((3, 3, 3), (), "inertia"),
+_RULES = {  # shape, in all and of one; entries that are zero by structure; what the values must be
+    "gravity": ((3,), (3,), (), "free"),
+    "platform_mass": ((), (), (), "mass"),
+    "platform_centre_of_mass": ((3,), (3,), (), "free"),
+    "platform_inertia": ((3, 3), (3, 3), (), "inertia"),
+    "prs_base_point": ((3, 3), (3,), (), "free"),
+    "prs_base_frame": ((3, 3, 3), (3, 3), (), "rotation"),
+    "prs_platform_point": ((3, 3), (3,), (), "free"),
+    "prs_platform_joint_offset": ((3, 3), (3,), (1, 2), "free"),
+    "prs_link1_mass": ((3,), (), (), "mass"),
+    "prs_link1_centre_of_mass": ((3, 3), (3,), (), "free"),
+    "prs_link1_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
+    "prs_link2_mass": ((3,), (), (), "mass"),
+    "prs_link2_centre_of_mass": ((3, 3), (3,), (), "free"),
+    "prs_link2_inertia": ((3, 3, 3), (3, 3), (), "inertia"),
 }
 
 
 class Parameters:
     """Parameters of the model: frozen, with read-only copies of arrays.
+
+    Values obey the rules of a specification: masses are not negative, inertia tensors symmetric
+    and without negative principal moments, frames rotations, axes of length 1, and what the
+    structure fixes at zero is zero.  Copies and what is unpickled are made anew from the values.
 
     Attributes:
         gravity: acceleration of gravity, base frame [m/s^2], shape (3,).
@@ -170,14 +178,12 @@ class Parameters:
     """
 
     def __init__(self, **values):
-        """Defaults, with the given values in their place; ValueError if one is impossible."""
-        unknown = sorted(set(values) - set(_DEFAULTS))
-        if unknown:
-            raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
-        for name, rule in _RULES.items():
-            value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
-            object.__setattr__(self, name, value)
-        object.__setattr__(self, "_cache", {})
+        """Defaults, with the given values in their place; ValueError if one is impossible.
+
+        TypeError for what is not made of real numbers.  A warning tells of an inertia that no
+        body has, by its principal moments.
+        """
+        _fill(self, values, values)
 
     def __setattr__(self, name, value):
         raise AttributeError("Parameters are frozen; use replace()")
@@ -187,7 +193,10 @@ class Parameters:
 
     def replace(self, **changes):
         """A copy with some values changed."""
-        return Parameters(**{**{name: getattr(self, name) for name in _RULES}, **changes})
+        return _fill(object.__new__(Parameters), {**self._values(), **changes}, changes)
+
+    def __reduce__(self):
+        return _remade, (self._values(),)
 
     def __eq__(self, other):
         if not isinstance(other, Parameters):
@@ -201,6 +210,10 @@ class Parameters:
         changed = [n for n in _RULES if not np.array_equal(getattr(self, n), _DEFAULTS[n])]
         return f"Parameters({', '.join(f'{n}={getattr(self, n)!r}' for n in changed)})"
 
+    def _values(self):
+        """All values by name."""
+        return {name: getattr(self, name) for name in _RULES}
+
     def _prepared(self):
         """Values that depend on the parameters alone, computed once."""
         if "model" not in self._cache:
@@ -208,46 +221,156 @@ class Parameters:
         return self._cache["model"]
 
 
-def _checked(name, value, shape, zeros, rule):
-    """A parameter as a read-only array (or float), or ValueError."""
-    value = np.array(value, dtype=float)
+def _fill(p, values, fresh):
+    """The parameters with these values, checked; fresh ones are warned of, where there is need."""
+    unknown = sorted(set(values) - set(_DEFAULTS))
+    if unknown:
+        raise ValueError(f"Parameters: unknown {unknown}; expected among {sorted(_DEFAULTS)}")
+    for name, rule in _RULES.items():
+        value = _checked(name, values.get(name, _DEFAULTS[name]), *rule)
+        object.__setattr__(p, name, value)
+        if rule[-1] == "inertia" and name in fresh:
+            _warn(name, value, 4)
+    object.__setattr__(p, "_cache", {})
+    return p
+
+
+def _remade(values):
+    """Parameters from the values of others: a copy, or what was pickled."""
+    return _fill(object.__new__(Parameters), values, ())
+
+
+_REAL = np.dtype(float)
+_KINDS = {"b": "truth values", "c": "complex numbers", "S": "text", "U": "text"}
+
+
+def _numbers(function, name, value):
+    """An argument as an array of floats; TypeError unless it is made of real numbers alone."""
+    try:
+        kind = _unfit(value)
+        if not kind:
+            return np.asarray(value, dtype=float)
+    except (ValueError, OverflowError) as error:
+        raise ValueError(f"{function}: {name} is no array of numbers: {error}") from None
+    raise TypeError(f"{function}: {name}: expected real numbers, got {kind}")
+
+
+def _unfit(value):
+    """What, other than real numbers, a value is made of; or an empty text."""
+    if isinstance(value, (list, tuple)):
+        if set(map(type, value)) <= {float, int, np.float64}:
+            return ""
+        return next(filter(None, map(_unfit, value)), "")
+    if isinstance(value, np.ma.MaskedArray):
+        return "a masked array"
+    if value is None:
+        return "None"
+    array = np.asarray(value)
+    if array.dtype.kind == "O":
+        odd = (v for v in array.flat if not isinstance(v, Real) or isinstance(v, bool))
+        return next((type(v).__name__ for v in odd), "")
+    return "" if array.dtype.kind in "iuf" else _KINDS.get(array.dtype.kind, array.dtype.name)
+
+
+def _vector(function, name, value, size):
+    """An argument as an array of floats (..., size), or an error that names it."""
+    if type(value) is not np.ndarray or value.dtype is not _REAL:
+        value = _numbers(function, name, value)
+    if value.ndim == 0 or value.shape[-1] != size:
+        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
+    return value
+
+
+def _lead(**arguments):
+    """Leading shape that arguments (..., n) have in common; ValueError that names them if none."""
+    leads = [v.shape[:-1] for v in arguments.values()]
+    if not any(leads):
+        return ()
+    try:
+        return np.broadcast_shapes(*leads)
+    except ValueError:
+        shapes = ", ".join(f"{name} {lead}" for name, lead in zip(arguments, leads))
+        raise ValueError(f"leading dimensions do not broadcast: {shapes}") from None
+
+
+def _given(p):
+    """The parameters, by default the model's own; TypeError for anything else."""
+    if isinstance(p, Parameters):
+        return p
+    if p is None:
+        return _DEFAULT
+    kind = type(p).__name__
+    if kind == "Parameters":
+        kind = f"Parameters of {type(p).__module__} (another module, or this one imported anew)"
+    raise TypeError(f"p: expected Parameters, got {kind}; a wrench is given as wrench=")
+
+
+def _frozen(value):
+    """A copy that cannot be made writable again: its memory is a bytes object."""
+    return np.frombuffer(value.tobytes(), dtype=float).reshape(value.shape)
+
+
+def _checked(name, value, shape, core, zeros, rule):
+    """A parameter as a read-only array (or float); ValueError or TypeError if it is impossible."""
+    value = _numbers("Parameters", name, value) + 0.0  # a copy, without the sign of zero
     if value.shape != shape:
         raise ValueError(f"Parameters: {name} has shape {value.shape}, expected {shape}")
     if not np.all(np.isfinite(value)):
         raise ValueError(f"Parameters: {name} has entries that are not finite")
-    flat = value.reshape(-1, value[0].size if zeros and value.ndim > len(_core(name)) else value.size)
-    if any(np.any(np.abs(flat[:, k]) > 1e-9) for k in zeros):
+    if np.any(np.abs(value) > 1e+12):
+        raise ValueError(f"Parameters: {name} has entries beyond 1e+12 in size")
+    value = np.array(value)
+    each = value.reshape(-1, *core)
+    flat = value.reshape(len(each), -1)
+    if any(np.any(np.abs(flat[:, k]) > 1e-09) for k in zeros):
         raise ValueError(f"Parameters: {name} must be zero in entries {zeros}: the structure is fixed")
-    for k in zeros:
-        flat[:, k] = 0.0
-    message = _violates(value, rule)
+    flat[:, list(zeros)] = 0.0
+    message = _violates(each, rule)
     if message:
         raise ValueError(f"Parameters: {name} {message}")
-    value.setflags(write=False)
-    return value if shape else float(value)
-
-
-def _core(name):
-    """Shape of one leg's entry, or of the whole."""
-    shape = _RULES[name][0]
-    return shape[1:] if name.startswith(_PER_LEG) else shape
+    return _frozen(value) if shape else float(value)
 
 
 def _violates(value, rule):
-    """What is wrong with a parameter, or an empty text."""
+    """What is wrong with the values of a parameter, one after another; or an empty text."""
     if rule == "mass" and np.any(value < 0.0):
         return "must not be negative"
-    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-6):
+    if rule == "unit" and np.any(np.abs(np.linalg.norm(value, axis=-1) - 1.0) > 1e-06):
         return "must be of length 1"
-    if rule == "inertia" and np.any(np.abs(value - np.swapaxes(value, -1, -2)) > 1e-9 * (
-        1e-300 + np.max(np.abs(value)))):
-        return "must be symmetric"
-    if rule == "rotation":
-        error = np.abs(value @ np.swapaxes(value, -1, -2) - np.eye(3))
-        if np.any(error > 1e-6) or np.any(np.linalg.det(value) < 0.0):
-            return "must be rotation matrices"
+    if rule == "planar_inertia" and np.any(value[:, 2, 2] < 0.0):
+        return "must have an izz that is not negative"
+    if rule == "inertia":
+        rounding = 1e-09 * np.max(np.abs(value), axis=(1, 2))
+        if np.any(np.max(np.abs(value - np.swapaxes(value, 1, 2)), axis=(1, 2)) > rounding):
+            return "must be symmetric to 1e-09 of its largest entry"
+        if np.any(np.linalg.eigvalsh(value)[:, 0] < -rounding):
+            return "must have no negative principal moments, to 1e-09 of its largest entry"
+    if rule in ("rotation", "planar_rotation") and not np.all(_are_rotations(value)):
+        return "must be rotation matrices: orthonormal to 1e-06, determinant +1"
+    if rule == "planar_rotation" and np.any(np.abs(value[:, 2, 2] - 1.0) > 1e-09):
+        return "must turn about the normal of the plane"
     return ""
 
+
+def _are_rotations(R):
+    """Which matrices (..., n, n) have orthonormal rows, to 1e-06, and a positive determinant."""
+    with np.errstate(all="ignore"):
+        error = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(R.shape[-1]))
+        return np.all(error <= 1e-06, axis=(-1, -2)) & (np.linalg.det(R) > 0.0)
+
+
+def _warn(name, value, level):
+    """Tell of principal moments that no body has: the largest exceeds the sum of the others."""
+    for tensor in value.reshape(-1, 3, 3):
+        small, middle, large = np.linalg.eigvalsh(tensor)
+        if large > small + middle + 1e-09 * np.max(np.abs(tensor)):
+            warnings.warn(
+                f"Parameters: {name}: principal moments {small:.6g}, {middle:.6g}, {large:.6g} kg m^2"
+                " belong to no body: the largest exceeds the sum of the others", stacklevel=level)
+
+
+HOME_X = _frozen(np.array([0.0, 0.0, 0.75, 0.0, 0.0, 0.0, 1.0]))
+HOME_Q = _frozen(np.array([0.2, 0.45, 0.2, 0.45, 0.2, 0.45]))
 
 _BRANCHES = {  # assembly branch of home, a sign per leg
     "branch_1": np.array([-1.0, -1.0, -1.0]),
@@ -326,27 +449,21 @@ def _prepare(p):
     Z_p_t = gravity_x*platform_mass
     Z_p_t_2 = gravity_y*platform_mass
     Z_p_t_3 = gravity_z*platform_mass
+    # (C2) rms distance of the platform points from their centroid
+    spread_t = 0.3333333333333333*sqrt(3.0)
     # (prs-K6) squared length, across the axis, of the direction fixed in link 2
     uu_2_t = prs_platform_joint_offset_x*prs_platform_joint_offset_x
-    # (prs-G1) size of the leg, the measure of what is near singular
-    size_t = (
-    prs_base_point_x*prs_base_point_x + prs_base_point_y*prs_base_point_y +
-        prs_base_point_z*prs_base_point_z
-    )
-    size_t_2 = (
-    prs_platform_point_x*prs_platform_point_x + prs_platform_point_y*prs_platform_point_y +
-        prs_platform_point_z*prs_platform_point_z
-    )
-    size_t_3 = size_t + size_t_2 + uu_2_t
-    size = sqrt(size_t_3)
+    # (prs-G2) length of the leg's lever arms, the measure of what is near singular
+    size_t = 3.5999999999999994e-07 + uu_2_t
+    size = sqrt(size_t)
     # (prs-K8) amplitude: off the manifold the nearest angle is taken
-    root_2_t = size*size*size_t_3
+    root_2_t = size*size*size_t
     # (prs-N15) force that accelerates joint 1, per unit
     P_c1_t = prs_link1_mass + prs_link2_mass
-    # (prs-G3) first moment of link 2 about the origin of link 2
+    # (prs-G4) first moment of link 2 about the origin of link 2
     h_2_x = prs_link2_centre_of_mass_x*prs_link2_mass
     h_2_y = prs_link2_centre_of_mass_y*prs_link2_mass
-    # (prs-G4) inertia tensor of link 2 about the origin of link 2
+    # (prs-G5) inertia tensor of link 2 about the origin of link 2
     J_2_t = prs_link2_centre_of_mass_z*prs_link2_centre_of_mass_z
     J_2_t_2 = (
     J_2_t + prs_link2_centre_of_mass_x*prs_link2_centre_of_mass_x +
@@ -360,7 +477,7 @@ def _prepare(p):
     g_r0_y = (
     gravity_x*prs_base_frame_xy + gravity_y*prs_base_frame_yy + gravity_z*prs_base_frame_zy
     )
-    # (prs-G2) first moment of link 1 about the origin of link 1
+    # (prs-G3) first moment of link 1 about the origin of link 1
     h_1_x = prs_link1_centre_of_mass_x*prs_link1_mass
     h_1_y = prs_link1_centre_of_mass_y*prs_link1_mass
     # (V1) potential energy
@@ -383,6 +500,20 @@ def _prepare(p):
         gravity_z*prs_base_frame_zz)*(b_r0_z*prs_link1_mass + b_r0_z*prs_link2_mass +
         prs_link1_centre_of_mass_z*prs_link1_mass + prs_link2_centre_of_mass_z*prs_link2_mass)
     )
+    # (prs-K8) amplitude: off the manifold the nearest angle is taken
+    inv_root_2_t_2 = 1.0/root_2_t
+    # (prs-V3) reciprocal vector 1
+    inv_size = 1.0/size
+    total_prs_x = np.sum(np.broadcast_to(prs_platform_point_x, _prs))
+    total_prs_y = np.sum(np.broadcast_to(prs_platform_point_y, _prs))
+    total_prs_z = np.sum(np.broadcast_to(prs_platform_point_z, _prs))
+    total_prs = np.sum(np.broadcast_to(size_t, _prs))
+    # (C1) centroid of the platform points
+    b_c_x = 0.3333333333333333*total_prs_x
+    b_c_y = 0.3333333333333333*total_prs_y
+    b_c_z = 0.3333333333333333*total_prs_z
+    # (C3) rms size of the legs, taken where the platform points coincide
+    legs_size = spread_t*sqrt(total_prs)
     shared = {
         "J_star_t_6": float(J_star_t_6),
         "J_star_t_8": float(J_star_t_8),
@@ -395,13 +526,18 @@ def _prepare(p):
         "Z_p_t": float(Z_p_t),
         "Z_p_t_2": float(Z_p_t_2),
         "Z_p_t_3": float(Z_p_t_3),
+        "b_c_x": float(b_c_x),
+        "b_c_y": float(b_c_y),
+        "b_c_z": float(b_c_z),
         "gravity_x": float(gravity_x),
         "gravity_y": float(gravity_y),
         "gravity_z": float(gravity_z),
         "h_star_x": float(h_star_x),
         "h_star_y": float(h_star_y),
         "h_star_z": float(h_star_z),
+        "legs_size": float(legs_size),
         "platform_mass": float(platform_mass),
+        "spread_t": float(spread_t),
     }
     legs = {
         "prs": {
@@ -415,6 +551,8 @@ def _prepare(p):
             "h_1_y": np.broadcast_to(h_1_y, _prs),
             "h_2_x": np.broadcast_to(h_2_x, _prs),
             "h_2_y": np.broadcast_to(h_2_y, _prs),
+            "inv_root_2_t_2": np.broadcast_to(inv_root_2_t_2, _prs),
+            "inv_size": np.broadcast_to(inv_size, _prs),
             "potential_t": np.broadcast_to(potential_t, _prs),
             "potential_t_2": np.broadcast_to(potential_t_2, _prs),
             "potential_t_3": np.broadcast_to(potential_t_3, _prs),
@@ -494,12 +632,13 @@ class _Floats:
     sin = staticmethod(lambda x: float(np.sin(x)))
     cos = staticmethod(lambda x: float(np.cos(x)))
     atan2 = staticmethod(lambda y, x: float(np.arctan2(y, x)))
+    least = staticmethod(lambda x, y: float(np.minimum(x, y)))
 
 
 class _Arrays:
     """Functions on arrays over states: the way for batches."""
 
-    sqrt, sin, cos, atan2 = np.sqrt, np.sin, np.cos, np.arctan2
+    sqrt, sin, cos, atan2, least = np.sqrt, np.sin, np.cos, np.arctan2, np.minimum
 
 
 _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
@@ -507,8 +646,8 @@ _FEW, _BLOCK = 8, 2048  # single states up to here; states per block beyond
 
 def _evaluate(plan, p, **vectors):
     """Arrays of a plan at the vectors that it reads."""
-    p = _DEFAULT if p is None else p
-    lead = np.broadcast_shapes(*(v.shape[:-1] for v in vectors.values()))
+    p = _given(p)
+    lead = _lead(**vectors)
     chosen = [np.broadcast_to(vectors[k], lead + vectors[k].shape[-1:]) for k in plan.inputs]
     return _run(plan, p, *chosen)
 
@@ -688,7 +827,7 @@ def _dynamics_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, h_star_in_base_x, h_star_in_base_y, h_star_in_base_z,
@@ -1009,7 +1148,7 @@ def _M_before(c, X, f):
     J_star_t_15 = J_star_t_2*R_zy + J_star_t_3*R_yy - J_star_t_5*R_zz - J_star_t_7*R_yz
     J_star_t_16 = J_star_t_3*R_zy - J_star_t_7*R_zz
     J_star_t_17 = 2.0*J_star_t_16 + J_star_xx
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, h_star_in_base_x,
         h_star_in_base_y, h_star_in_base_z, J_star_t_10, J_star_t_11, J_star_t_12, J_star_t_14,
@@ -1264,7 +1403,7 @@ def _Z_before(c, X, V, f):
     Z_q_in_base_x = R_xx*Z_q_x + R_xy*Z_q_y + R_xz*Z_q_z
     Z_q_in_base_y = R_yx*Z_q_x + R_yy*Z_q_y + R_yz*Z_q_z
     Z_q_in_base_z = R_zx*Z_q_x + R_zy*Z_q_y + R_zz*Z_q_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, Z_p_x, Z_p_y, Z_p_z, Z_q_in_base_x, Z_q_in_base_y,
@@ -1437,7 +1576,7 @@ def _H_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -1537,7 +1676,7 @@ def _Hk_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -1605,7 +1744,7 @@ def _constraint_bias_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, omega_x, omega_y, omega_z,), (),
     )
@@ -1764,7 +1903,7 @@ def _required_before(c, X, V, A, f):
     mu_p_in_base_x = R_xx*mu_p_x + R_xy*mu_p_y + R_xz*mu_p_z
     mu_p_in_base_y = R_yx*mu_p_x + R_yy*mu_p_y + R_yz*mu_p_z
     mu_p_in_base_z = R_zx*mu_p_x + R_zy*mu_p_y + R_zz*mu_p_z
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
@@ -1958,7 +2097,7 @@ def _inverse_kinematics_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -2059,7 +2198,7 @@ def _joint_rates_before(c, X, V, f):
     omega_x = V_3
     omega_y = V_4
     omega_z = V_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z,), (),
@@ -2186,7 +2325,7 @@ def _joint_accelerations_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
@@ -2314,7 +2453,7 @@ def _constraints_before(c, X, f):
     R_zx = quaternion_xz - quaternion_wy
     R_zy = quaternion_wx + quaternion_yz
     R_zz = 1.0 - quaternion_xx - quaternion_yy
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (),)
 
 
@@ -2405,7 +2544,7 @@ def _legs_before(c, X, V, A, f):
     alpha_x = A_3
     alpha_y = A_4
     alpha_z = A_5
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, t_dot_x, t_dot_y,
         t_dot_z, omega_x, omega_y, omega_z, t_ddot_x, t_ddot_y, t_ddot_z, alpha_x, alpha_y,
@@ -2578,7 +2717,7 @@ def _potential_before(c, X, f):
         gravity_y*(R_yx*h_star_x + R_yy*h_star_y + R_yz*h_star_z + platform_mass*t_y) +
         gravity_z*(R_zx*h_star_x + R_zy*h_star_y + R_zz*h_star_z + platform_mass*t_z)
     )
-    ok = (quaternion_norm2 > 0.0) & (quaternion_scale > 0.0)
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
     return (
     ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz, potential_t_4,), (),
     )
@@ -2644,6 +2783,146 @@ def _potential_after(c, s, t, f):
     potential = -potential_t_4 - total_prs
     ok = True
     return (ok, (potential,),)
+
+
+# condition: 211 mul, 144 add, 6 div, 10 sqrt, 0 trig
+def _condition_before(c, X, f):
+    legs_size, = c
+    X_0 = X[0]
+    X_1 = X[1]
+    X_2 = X[2]
+    X_3 = X[3]
+    X_4 = X[4]
+    X_5 = X[5]
+    X_6 = X[6]
+    # X: named entries
+    t_x = X_0
+    t_y = X_1
+    t_z = X_2
+    quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6
+    quaternion_scale = 2.0/quaternion_norm2
+    quaternion_sx = X_3*quaternion_scale
+    quaternion_sy = X_4*quaternion_scale
+    quaternion_sz = X_5*quaternion_scale
+    quaternion_wx = X_6*quaternion_sx
+    quaternion_wy = X_6*quaternion_sy
+    quaternion_wz = X_6*quaternion_sz
+    quaternion_xx = X_3*quaternion_sx
+    quaternion_xy = X_3*quaternion_sy
+    quaternion_xz = X_3*quaternion_sz
+    quaternion_yy = X_4*quaternion_sy
+    quaternion_yz = X_4*quaternion_sz
+    quaternion_zz = X_5*quaternion_sz
+    R_xx = 1.0 - quaternion_yy - quaternion_zz
+    R_xy = quaternion_xy - quaternion_wz
+    R_xz = quaternion_wy + quaternion_xz
+    R_yx = quaternion_wz + quaternion_xy
+    R_yy = 1.0 - quaternion_xx - quaternion_zz
+    R_yz = quaternion_yz - quaternion_wx
+    R_zx = quaternion_xz - quaternion_wy
+    R_zy = quaternion_wx + quaternion_yz
+    R_zz = 1.0 - quaternion_xx - quaternion_yy
+    ok = (quaternion_scale > 0.0) & (quaternion_scale < np.inf)
+    return (
+    ok, (t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz,), (legs_size,),
+    )
+
+
+def _condition_prs(c, k, x, s, f):
+    sqrt = f.sqrt
+    least = f.least
+    b_c_x, b_c_y, b_c_z = c
+    (
+    branch_1, inv_root_2_t_2, inv_size, prs_base_frame_xx, prs_base_frame_xy, prs_base_frame_xz,
+        prs_base_frame_yx, prs_base_frame_yy, prs_base_frame_yz, prs_base_frame_zx,
+        prs_base_frame_zy, prs_base_frame_zz, prs_base_point_x, prs_base_point_y,
+        prs_base_point_z, prs_platform_joint_offset_x, prs_platform_point_x, prs_platform_point_y,
+        prs_platform_point_z, root_2_t, size, uu_2_t,
+    ) = k
+    t_x, t_y, t_z, R_xx, R_xy, R_xz, R_yx, R_yy, R_yz, R_zx, R_zy, R_zz = s
+    # (prs-K1) from the base point to the connection point
+    q_in_base_x = (
+    R_xx*prs_platform_point_x + R_xy*prs_platform_point_y + R_xz*prs_platform_point_z
+    )
+    q_in_base_y = (
+    R_yx*prs_platform_point_x + R_yy*prs_platform_point_y + R_yz*prs_platform_point_z
+    )
+    q_in_base_z = (
+    R_zx*prs_platform_point_x + R_zy*prs_platform_point_y + R_zz*prs_platform_point_z
+    )
+    S_x = q_in_base_x + t_x - prs_base_point_x
+    S_y = q_in_base_y + t_y - prs_base_point_y
+    S_z = q_in_base_z + t_z - prs_base_point_z
+    # (prs-K2) component along axis 1
+    px_1 = S_x*prs_base_frame_xx + S_y*prs_base_frame_yx + S_z*prs_base_frame_zx
+    # (prs-K3) discriminant of the distance equation
+    disc_1_t = S_x*prs_base_frame_xz + S_y*prs_base_frame_yz + S_z*prs_base_frame_zz
+    disc_1_t_2 = S_x*S_x + S_y*S_y + S_z*S_z
+    disc_1 = disc_1_t*disc_1_t + px_1*px_1 + uu_2_t - disc_1_t_2
+    # (prs-K4) displacement of joint 1
+    q_1_t = branch_1*sqrt(disc_1)
+    # (prs-K1) from the base point to the connection point
+    S_r0_y = S_x*prs_base_frame_xy + S_y*prs_base_frame_yy + S_z*prs_base_frame_zy
+    # (prs-K7) squared amplitude
+    rho2_2 = uu_2_t*(S_r0_y*S_r0_y + q_1_t*q_1_t)
+    # (prs-K9) cosine of the angle of joint 2 from its reference direction
+    inv_root_2 = 1.0/(sqrt(rho2_2))
+    c_2 = inv_root_2*prs_platform_joint_offset_x*q_1_t
+    # (prs-K10) sine of the angle of joint 2 from its reference direction
+    s_2 = S_r0_y*inv_root_2*prs_platform_joint_offset_x
+    # (prs-V2) velocity of the connection point per rate of joint 2
+    v_2_t = c_2*prs_platform_joint_offset_x
+    # (prs-V3) reciprocal vector 1
+    w_1_t = prs_platform_joint_offset_x*s_2/v_2_t
+    _r0_x = -c_2 - s_2*w_1_t
+    _r0_y = c_2*w_1_t - s_2
+    w_1_in_base_x = (
+    _r0_x*(prs_base_frame_xy*s_2 - c_2*prs_base_frame_xx) + _r0_y*(-c_2*prs_base_frame_xy -
+        prs_base_frame_xx*s_2)
+    )
+    w_1_in_base_y = (
+    _r0_x*(prs_base_frame_yy*s_2 - c_2*prs_base_frame_yx) + _r0_y*(-c_2*prs_base_frame_yy -
+        prs_base_frame_yx*s_2)
+    )
+    w_1_in_base_z = (
+    _r0_x*(prs_base_frame_zy*s_2 - c_2*prs_base_frame_zx) + _r0_y*(-c_2*prs_base_frame_zy -
+        prs_base_frame_zx*s_2)
+    )
+    # (M8) moment of the column's unit force about the platform origin
+    H_a_1_x = q_in_base_y*w_1_in_base_z - q_in_base_z*w_1_in_base_y
+    H_a_1_y = q_in_base_z*w_1_in_base_x - q_in_base_x*w_1_in_base_z
+    H_a_1_z = q_in_base_x*w_1_in_base_y - q_in_base_y*w_1_in_base_x
+    # (M9) moment of the column's unit force about the platform origin
+    Hk_a_1_x = prs_base_frame_zz*q_in_base_y - prs_base_frame_yz*q_in_base_z
+    Hk_a_1_y = prs_base_frame_xz*q_in_base_z - prs_base_frame_zz*q_in_base_x
+    Hk_a_1_z = prs_base_frame_yz*q_in_base_x - prs_base_frame_xz*q_in_base_y
+    # (C2) rms distance of the platform points from their centroid
+    spread_t_2 = b_c_x - prs_platform_point_x
+    spread_t_3 = b_c_y - prs_platform_point_y
+    spread_t_4 = b_c_z - prs_platform_point_z
+    spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 + spread_t_4*spread_t_4
+    # (prs-K8) amplitude: off the manifold the nearest angle is taken
+    pivot_size = abs(rho2_2)
+    # (prs-V3) reciprocal vector 1
+    pivot_size_2 = abs(v_2_t)
+    # (prs-N29) force at the connection point that balances the leg's inertia and weight along all freedoms
+    least_pivots = least(sqrt(inv_root_2_t_2*pivot_size), inv_size*pivot_size_2)
+    ok = (disc_1 >= 0.0) & (abs(rho2_2) > _TOLERANCE * _TOLERANCE * root_2_t) & (abs(-v_2_t) > _TOLERANCE * size)
+    return (
+    ok, (spread_t_5,), (w_1_in_base_x, w_1_in_base_y, w_1_in_base_z, H_a_1_x, H_a_1_y, H_a_1_z,
+        prs_base_frame_xz, prs_base_frame_yz, prs_base_frame_zz, Hk_a_1_x, Hk_a_1_y, Hk_a_1_z,
+        least_pivots, disc_1,),
+    )
+
+
+def _condition_after(c, s, t, f):
+    sqrt = f.sqrt
+    spread_t, = c
+    total_prs, = t
+    # (C2) rms distance of the platform points from their centroid
+    spread = spread_t*sqrt(total_prs)
+    ok = True
+    return (ok, (spread,),)
 
 
 _DYNAMICS = _Plan(
@@ -3100,10 +3379,59 @@ arrays=(('potential', (1,)),),
         ((0, 0),),
     ),
 )
+_CONDITION = _Plan(
+    inputs=('X',),
+arrays=(('H', (6, 3)), ('Hk', (6, 3)), ('lengths', (2,)), ('pivots', (3,)), ('reach', (3,))),
+    before=_Part(
+        _condition_before,
+('legs_size',),
+        None,
+        ((2, 1),),
+    ),
+    legs=(
+        _LegPart(
+            _condition_prs,
+            "prs",
+('b_c_x', 'b_c_y', 'b_c_z'),
+('branch_1', 'inv_root_2_t_2', 'inv_size', 'prs_base_frame_xx', 'prs_base_frame_xy',
+            'prs_base_frame_xz', 'prs_base_frame_yx', 'prs_base_frame_yy', 'prs_base_frame_yz',
+            'prs_base_frame_zx', 'prs_base_frame_zy', 'prs_base_frame_zz', 'prs_base_point_x',
+            'prs_base_point_y', 'prs_base_point_z', 'prs_platform_joint_offset_x',
+            'prs_platform_point_x', 'prs_platform_point_y', 'prs_platform_point_z', 'root_2_t',
+            'size', 'uu_2_t'),
+(),
+(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11),
+            1,
+            (
+(0, (0, 1, 2)),
+(0, (3, 4, 5)),
+(0, (6, 7, 8)),
+(0, (9, 10, 11)),
+(0, (12, 13, 14)),
+(0, (15, 16, 17)),
+(1, (0, 1, 2)),
+(1, (3, 4, 5)),
+(1, (6, 7, 8)),
+(1, (9, 10, 11)),
+(1, (12, 13, 14)),
+(1, (15, 16, 17)),
+(3, (0, 1, 2)),
+(4, (0, 1, 2)),
+            ),
+        ),
+    ),
+    after=_Part(
+        _condition_after,
+('spread_t',),
+(),
+        ((2, 0),),
+    ),
+)
 _DEFAULT = Parameters()
 
 
 _PIVOT = 1.8e-12  # a pivot below this fraction of its row counts as zero (epsilon^(3/4))
+_CLEARLY = 2.0  # rows change places only for a pivot that is larger by this factor
 
 
 def _solve(a, b):
@@ -3134,7 +3462,8 @@ def _solve_one(a, b):
         a[i] = [v / size for v in row] + [b[i] / size]
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(a[i][k]))
-        a[k], a[best] = a[best], a[k]
+        if abs(a[best][k]) > _CLEARLY * abs(a[k][k]):
+            a[k], a[best] = a[best], a[k]
         if not abs(a[k][k]) > _PIVOT:
             return failure
         head = a[k]
@@ -3155,7 +3484,9 @@ def _solve_block(a, b):
     a = np.concatenate((a, b[:, :, None]), axis=2) / size
     which = np.arange(states)
     for k in range(n):
-        best = k + np.argmax(np.abs(a[:, k:, k]), axis=1)
+        column = np.abs(a[:, k:, k])
+        best = np.argmax(column, axis=1)
+        best = k + np.where(column[which, best] > _CLEARLY * column[:, 0], best, 0)
         a[which, k], a[which, best] = a[which, best], a[which, k].copy()
         good &= np.abs(a[:, k, k]) > _PIVOT
         factor = a[:, k + 1 :, k] / a[:, k, k, None]
@@ -3165,14 +3496,6 @@ def _solve_block(a, b):
         x[:, k] = (a[:, k, n] - np.sum(a[:, k, k + 1 : n] * x[:, k + 1 :], axis=1)) / a[:, k, k]
     x[~good] = np.nan
     return x
-
-
-def _vector(function, name, value, size):
-    """An argument as an array of floats (..., size), or ValueError."""
-    value = np.asarray(value, dtype=float)
-    if value.ndim == 0 or value.shape[-1] != size:
-        raise ValueError(f"{function}: {name} has shape {value.shape}, expected (..., {size})")
-    return value
 
 
 def M(X, p=None):
@@ -3219,7 +3542,17 @@ def _known(array, axes, *inputs):
     return _together(failed, (array, axes))[0]
 
 
-def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
+def _weights(weights):
+    """The weights (..., NU) of the drives."""
+    if weights is None:
+        return np.ones(NU)
+    weights = _vector("inverse_dynamics", "weights", weights, NU)
+    if not np.all((weights > 0.0) & (weights < np.inf)):
+        raise ValueError("inverse_dynamics: weights must be positive and finite")
+    return weights
+
+
+def inverse_dynamics(X, V, A, p=None, *, wrench=None, weights=None):
     """Actuator forces tau (..., NU) for the acceleration A (..., NV), by Eq. 3.
 
     The wrench (..., NW) acts on the platform. weights: unused, as the drives are not redundant.
@@ -3227,39 +3560,37 @@ def inverse_dynamics(X, V, A, p=None, wrench=None, weights=None):
     """
     X, V = _vector("inverse_dynamics", "X", X, NQ), _vector("inverse_dynamics", "V", V, NV)
     A = _vector("inverse_dynamics", "A", A, NV)
+    weights, external = _weights(weights), _external("inverse_dynamics", wrench)
+    _lead(X=X, V=V, A=A, wrench=external, weights=weights)
     required, matrix, *rest = _evaluate(_REQUIRED, p, X=X, V=V, A=A)
-    force = required - _external("inverse_dynamics", wrench)
+    force = required - external
     return _drive_forces(matrix, rest[0] if rest else None, force, weights)
 
 
-def forward_dynamics(X, V, tau, p=None, wrench=None):
+def forward_dynamics(X, V, tau, p=None, *, wrench=None):
     """Acceleration A (..., NV) under actuator forces tau (..., NU) and the wrench.  Returns A and lambda."""
     X, V = _vector("forward_dynamics", "X", X, NQ), _vector("forward_dynamics", "V", V, NV)
-    tau = _vector("forward_dynamics", "tau", tau, NU)
+    tau, external = _vector("forward_dynamics", "tau", tau, NU), _external("forward_dynamics", wrench)
+    _lead(X=X, V=V, tau=tau, wrench=external)
     inertia, bias, matrix, *rest = _evaluate(_DYNAMICS, p, X=X, V=V)
-    external = _external("forward_dynamics", wrench)
     with np.errstate(all="ignore"):
         force = (matrix @ tau[..., None])[..., 0] + external - bias
     return _constrained_acceleration(inertia, rest[0], rest[1], force)
 
 
-def complete_acceleration(X, V, A, p=None):
-    """A with the entries of undriven extra coordinates taken from their own rows (Eq. 7).
-    """
+def complete_acceleration(X, V, A, p=None, *, wrench=None):
+    """A: there are no passive extra coordinates, whose accelerations would have to follow."""
     X, V = _vector("complete_acceleration", "X", X, NQ), _vector("complete_acceleration", "V", V, NV)
-    A = _vector("complete_acceleration", "A", A, NV)
-    lead = np.broadcast_shapes(A.shape[:-1], X.shape[:-1], V.shape[:-1])
+    A, external = _vector("complete_acceleration", "A", A, NV), _external("complete_acceleration", wrench)
+    p, lead = _given(p), _lead(X=X, V=V, A=A, wrench=external)
     return _known(np.array(np.broadcast_to(A, (*lead, NV))), 1)
 
 
 def _drive_forces(matrix, directions, force, weights):
     """tau of least weighted norm with H tau + Hk lambda = force."""
     rows = list(_DRIVEN_ROWS)
-    scale = np.ones(NU) if weights is None else _vector("inverse_dynamics", "weights", weights, NU)
-    if not np.all(scale > 0.0):
-        raise ValueError("inverse_dynamics: weights must be positive")
-    scale = 1.0 / np.sqrt(scale)
-    h, f = matrix[..., rows, :] * scale, force[..., rows]
+    scale = 1.0 / np.sqrt(weights)
+    h, f = matrix[..., rows, :] * scale[..., None, :], force[..., rows]
     k = directions[..., rows, :]
     left, across = _split(k)
     tau = scale * _least_norm(across @ h, (across @ f[..., None])[..., 0])
@@ -3287,13 +3618,73 @@ def _least_norm(h, f):
 
 
 def null_space(X, p=None):
-    """Orthonormal basis (..., NU, NU - rank) of the tau with H tau = 0."""
-    matrix = H(X, p)[..., list(_DRIVEN_ROWS), :]
+    """Orthonormal basis (..., NU, 0) of the tau with H tau = 0."""
+    matrix = H(X, p)
     bad = np.isnan(matrix).any(axis=(-1, -2))
     _, _, vt = np.linalg.svd(np.where(bad[..., None, None], 0.0, matrix))
-    basis = np.array(np.swapaxes(vt[..., min(len(_DRIVEN_ROWS), NU) :, :], -1, -2))
+    basis = np.array(np.swapaxes(vt[..., 3:, :], -1, -2))
     basis[bad] = np.nan
     return basis
+
+
+_MOMENT_ROWS = (3, 4, 5)  # rows of H and Hk that are moments
+
+
+def condition(X, p=None, *, length=None):
+    """How far a pose is from singularities: sigma (..., 3), legs (..., 3), status (...).
+
+    sigma: singular values of H in descending order, moment rows divided by `length` [m], as a
+    rule the rms distance of the platform points from their centroid (where they coincide, the
+    rms size of the legs).  legs: for every leg the least tested pivot as a fraction of its scale;
+    a leg is refused at 1.5e-8.  status: 0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not
+    converged, as in C; sigma and legs are NaN where it is not 0.
+    """
+    return _condition("condition", X, p, length)
+
+
+def condition_constrained(X, p=None, *, length=None):
+    """The same with the singular values (..., 6) of [H Hk], which inverse dynamics solves."""
+    return _condition("condition_constrained", X, p, length, columns=NU + NC)
+
+
+def _condition(name, X, p, length, columns=NU):
+    """sigma of the first columns of [H Hk], margins of the legs, status codes."""
+    X = _vector(name, "X", X, NQ)
+    p = _DEFAULT if p is None else p
+    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
+        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    lead = X.shape[:-1]
+    vectors = {"X": X.reshape(-1, NQ)}
+    states = len(vectors["X"])
+    made = [np.zeros((states, int(np.prod(shape, dtype=int)))) for _, shape in _CONDITION.arrays]
+    flat = [np.ascontiguousarray(vectors[k].T) for k in _CONDITION.inputs]
+    with np.errstate(all="ignore"):
+        given = _CONDITION.before.function(_CONDITION.constants(p)[0], *flat, _Arrays)[0]
+        _run_block(_CONDITION, p, flat, made)
+        found = {n: v.reshape(states, *s) for v, (n, s) in zip(made, _CONDITION.arrays)}
+        spread, legs_size = found["lengths"].T
+        if length is None:
+            length = np.where(spread > 1e-9 * legs_size, spread, legs_size)[:, None, None]
+        matrix = np.concatenate((found["H"], found["Hk"]), axis=-1)
+        matrix[:, list(_MOMENT_ROWS)] /= length
+        finite = np.isfinite(matrix).all(axis=(1, 2)) & np.isfinite(found["pivots"]).all(axis=1)
+        status = np.select(
+            [
+                ~(np.isfinite(vectors["X"]).all(axis=1) & given),
+                ~(found["reach"] >= 0.0).all(axis=1),
+                ~(found["pivots"] > _TOLERANCE).all(axis=1),
+                ~finite,
+            ],
+            [3, 1, 2, 3],
+            0,
+        )
+    good = (status == 0)[:, None]
+    sigma = np.linalg.svd(np.where(good[..., None], matrix[..., :columns], 0.0), compute_uv=False)
+    sigma, legs = np.where(good, sigma, np.nan), np.where(good, found["pivots"], np.nan)
+    return (
+        sigma.reshape(*lead, sigma.shape[1]), legs.reshape(*lead, legs.shape[1]),
+        status.reshape(lead)[()],
+    )
 
 
 def inverse_kinematics(X, p=None):
@@ -3314,15 +3705,16 @@ def joint_accelerations(X, V, A, p=None):
         _JOINT_ACCELERATIONS, p, X=X, V=V, A=_vector("joint_accelerations", "A", A, NV))[0]
 
 
-def leg_reactions(X, V, A, p=None, wrench=None):
+def leg_reactions(X, V, A, p=None, *, wrench=None):
     """Force of each leg on the platform (..., legs, 3) at its platform joint, base axes.
 
     The drives give the forces of `inverse_dynamics`.
     """
     X, V = _vector("leg_reactions", "X", X, NQ), _vector("leg_reactions", "V", V, NV)
     A = _vector("leg_reactions", "A", A, NV)
+    wrench = None if wrench is None else _vector("leg_reactions", "wrench", wrench, NW)
     forces, drive, *directions = _evaluate(_LEGS_FORCE, p, X=X, V=V, A=A)
-    tau = inverse_dynamics(X, V, A, p, wrench)
+    tau = inverse_dynamics(X, V, A, p, wrench=wrench)
     parts = [(tau[0], drive, _ACTUATOR_LEGS)]
     parts.append((tau[1], directions[0], _CONSTRAINT_LEGS))
     forces = np.array(np.broadcast_to(forces, (*parts[0][0].shape[:-1], *forces.shape[-2:])))
@@ -3335,6 +3727,7 @@ def leg_reactions(X, V, A, p=None, wrench=None):
 def energy(X, V, p=None):
     """Kinetic and potential energy (...,); the latter is zero at the base origin."""
     X, V = _vector("energy", "X", X, NQ), _vector("energy", "V", V, NV)
+    _lead(X=X, V=V)
     inertia = M(X, p)
     with np.errstate(all="ignore"):
         kinetic = 0.5 * np.einsum("...i,...ij,...j->...", V, inertia, V)
@@ -3349,8 +3742,8 @@ def forward_kinematics(q_actuated, X0, p=None):
     Extra coordinates that the drives do not determine stay.  NaN where no X is found.
     """
     q_actuated = _vector("forward_kinematics", "q_actuated", q_actuated, NU)
-    X0 = _vector("forward_kinematics", "X0", X0, NQ)
-    lead = np.broadcast_shapes(q_actuated.shape[:-1], X0.shape[:-1])
+    X0, p = _vector("forward_kinematics", "X0", X0, NQ), _given(p)
+    lead = _lead(q_actuated=q_actuated, X0=X0)
     target = np.broadcast_to(q_actuated, (*lead, NU)).reshape(-1, NU)
     X = np.broadcast_to(X0, (*lead, NQ)).reshape(-1, NQ).copy()
     found = [_find_pose(q, x, p) for q, x in zip(target, X)]
@@ -3392,31 +3785,74 @@ def _find_pose(q_actuated, X, p):
     return X if np.max(np.abs(gap), initial=0.0) < 1e-9 else failure
 
 
+def _rotations(R, n, nearest):
+    """Rotation matrices (..., n, n): R as it is, or the nearest; those with NaN stay."""
+    R = np.array(_numbers("pose", "R", R))
+    if R.shape[-2:] != (n, n):
+        raise ValueError(f"pose: R has shape {R.shape}, expected (..., {n}, {n})")
+    known = np.isfinite(R).all(axis=(-1, -2))
+    if nearest:
+        R[known] = _nearest(R[known])
+    if not np.all(_are_rotations(R[known])):
+        raise ValueError(
+            "pose: R is no rotation matrix, with orthonormal rows to 1e-06 and determinant +1;"
+            " nearest=True takes the nearest one")
+    return R
+
+
+def _nearest(R):
+    """The nearest rotations (k, n, n); ValueError where several are."""
+    largest = np.max(np.abs(R), axis=(1, 2), keepdims=True)
+    u, s, vt = np.linalg.svd(R / np.where(largest > 0.0, largest, 1.0))
+    sign = np.sign(np.linalg.det(u @ vt))
+    if np.any(s[:, -2] + sign * s[:, -1] <= 1e-06 * s[:, 0]):
+        raise ValueError("pose: R has no single nearest rotation")
+    u[:, :, -1] *= sign[:, None]
+    return u @ vt
+
+
 _Q = 3  # where the quaternion begins in X
 
 
 def rotation(X):
-    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised."""
+    """base_R_platform (..., 3, 3) at X (..., NQ); the quaternion need not be normalised.
+
+    NaN where it is zero or its squared length overflows.
+    """
     X = _vector("rotation", "X", X, NQ)
     with np.errstate(all="ignore"):
-        q = X[..., _Q : _Q + 4]
-        length = np.linalg.norm(q, axis=-1, keepdims=True)
-        x, y, z, w = np.moveaxis(q / np.where(np.isfinite(length), length, np.nan), -1, 0)
-    rows = (
-        (1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)),
-        (2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)),
-        (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)),
-    )
+        x, y, z, w = np.moveaxis(_scaled(X[..., _Q : _Q + 4]), -1, 0)
+        xx, yy, zz, ww = x * x, y * y, z * z, w * w
+        n = xx + yy + zz + ww
+        rows = (
+            ((xx + ww - (yy + zz)) / n, 2 * (x * y - w * z) / n, 2 * (x * z + w * y) / n),
+            (2 * (x * y + w * z) / n, (yy + ww - (xx + zz)) / n, 2 * (y * z - w * x) / n),
+            (2 * (x * z - w * y) / n, 2 * (y * z + w * x) / n, (zz + ww - (xx + yy)) / n),
+        )
     return _known(np.stack([np.stack(row, axis=-1) for row in rows], axis=-2), 2, X)
 
 
-def pose(t, R):
-    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero."""
-    R = np.asarray(R, dtype=float)
-    if R.shape[-2:] != (3, 3):
-        raise ValueError(f"pose: R has shape {R.shape}, expected (..., 3, 3)")
+def _scaled(q):
+    """Quaternions (..., 4) with largest entry 1, so that squares of tiny ones keep their digits."""
+    size = np.max(np.abs(q), axis=-1, keepdims=True)
+    return q / np.where(np.isfinite(np.sum(q * q, axis=-1, keepdims=True)), size, np.nan)
+
+
+def _unit(q):
+    """Quaternions (..., 4) of length 1."""
+    q = _scaled(q)
+    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+
+
+def pose(t, R, *, nearest=False):
+    """X of the platform at origin t (..., 3) with rotation matrix R (..., 3, 3); extra coordinates zero.
+
+    ValueError where R has not orthonormal rows, to 1e-06, and determinant +1.  With nearest=True
+    the rotation is taken that is nearest to R (least sum of squared differences of entries).
+    """
+    R = _rotations(R, 3, nearest)
     with np.errstate(all="ignore"):
-        return _with_position(t, _quaternion(R))
+        return _with_position("pose", t, _quaternion(R))
 
 
 def _quaternion(R):
@@ -3434,13 +3870,13 @@ def _quaternion(R):
     ], axis=-2)
     best = np.argmax(np.linalg.norm(candidates, axis=-1), axis=-1)
     q = np.take_along_axis(candidates, best[..., None, None], axis=-2)[..., 0, :]
-    return q / np.linalg.norm(q, axis=-1, keepdims=True)
+    return _unit(q)
 
 
-def _with_position(t, q):
-    """X of a position and a quaternion (or angle); extra coordinates zero."""
-    t = _vector("pose", "t", t, _Q)
-    lead = np.broadcast_shapes(t.shape[:-1], q.shape[:-1])
+def _with_position(function, t, q):
+    """X of a position and a quaternion; extra coordinates zero."""
+    t = _vector(function, "t", t, _Q)
+    lead = _lead(t=t, rotation=q)
     parts = [np.broadcast_to(v, lead + v.shape[-1:]) for v in (t, q)]
     return _known(np.concatenate((*parts, np.zeros((*lead, NQ - _Q - 4))), axis=-1), 1)
 
@@ -3455,17 +3891,16 @@ def pose_from_rpy(t, rpy):
         sx * cy * cz - cx * sy * sz, cx * sy * cz + sx * cy * sz,
         cx * cy * sz - sx * sy * cz, cx * cy * cz + sx * sy * sz,
     ), axis=-1)
-    return _with_position(t, q)
+    return _with_position("pose_from_rpy", t, q)
 
 
 def X_dot(X, V):
     """Rate of X (..., NQ) at the velocity V (..., NV)."""
     X, V = _vector("X_dot", "X", X, NQ), _vector("X_dot", "V", V, NV)
-    q, w = X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
+    lead, q, w = _lead(X=X, V=V), X[..., _Q : _Q + 4], V[..., _Q : _Q + 3]
     with np.errstate(all="ignore"):
         vector = 0.5 * (q[..., 3:] * w + np.cross(w, q[..., :3]))
         scalar = -0.5 * np.sum(w * q[..., :3], axis=-1, keepdims=True)
-    lead = np.broadcast_shapes(X.shape[:-1], V.shape[:-1])
     parts = (V[..., :_Q], vector, scalar, V[..., _Q + 3 :])
     rate = np.concatenate([np.broadcast_to(v, lead + v.shape[-1:]) for v in parts], axis=-1)
     return _known(rate, 1, X)
@@ -3476,7 +3911,7 @@ def _moved(X, step):
     w = step[_Q : _Q + 3]
     angle = np.linalg.norm(w)
     turn = np.append(w * (0.5 * np.sinc(angle / (2 * np.pi))), np.cos(0.5 * angle))
-    a, q = turn, X[_Q : _Q + 4] / np.linalg.norm(X[_Q : _Q + 4])
+    a, q = turn, _unit(X[_Q : _Q + 4])
     vector = a[3] * q[:3] + q[3] * a[:3] + np.cross(a[:3], q[:3])
     scalar = a[3] * q[3] - a[:3] @ q[:3]
     return np.concatenate((X[:_Q] + step[:_Q], vector, [scalar], X[_Q + 4 :] + step[_Q + 3 :]))
@@ -3500,7 +3935,7 @@ def constraint_bias(X, V, p=None):
 
 def project(X, p=None):
     """The nearest pose (..., NQ) on which the constraints hold, by Gauss-Newton; NaN if none."""
-    X = _vector("project", "X", X, NQ)
+    X, p = _vector("project", "X", X, NQ), _given(p)
     poses = [_project_one(x.copy(), p) for x in X.reshape(-1, NQ)]
     return np.array(poses).reshape(X.shape)
 

@@ -3,6 +3,12 @@
 
 #include "tripod_3rps.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(TRIPOD_3RPS_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define TRIPOD_3RPS_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef tripod_3rps_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -285,26 +323,26 @@ const tripod_3rps_real tripod_3rps_HOME_Q[TRIPOD_3RPS_NJ] = {R(0.2), R(0.75), R(
 static int acceptable(const tripod_3rps_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->rps_base_point[0][0], 9);
-    ok &= all_finite(&p->rps_base_frame[0][0][0], 27);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->rps_base_point[0][0], 9);
+    ok &= all_within(&p->rps_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->rps_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->rps_platform_point[0][0], 9);
-    ok &= all_finite(&p->rps_link1_mass[0], 3);
+    ok &= all_within(&p->rps_platform_point[0][0], 9);
+    ok &= all_within(&p->rps_link1_mass[0], 3);
     ok &= none_negative(&p->rps_link1_mass[0], 3);
-    ok &= all_finite(&p->rps_link1_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->rps_link1_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->rps_link1_inertia[0][0][0], 3);
-    ok &= all_finite(&p->rps_link2_mass[0], 3);
+    ok &= all_within(&p->rps_link1_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->rps_link1_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->rps_link1_inertia[0][0][0], 3);
+    ok &= all_within(&p->rps_link2_mass[0], 3);
     ok &= none_negative(&p->rps_link2_mass[0], 3);
-    ok &= all_finite(&p->rps_link2_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->rps_link2_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->rps_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->rps_link2_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->rps_link2_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->rps_link2_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -314,6 +352,9 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return TRIPOD_3RPS_INVALID;
     }
+    real total_rps_x = 0;
+    real total_rps_y = 0;
+    real total_rps_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -353,6 +394,10 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
     const real Z_p_t_3 = gravity_z*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = R(1.299038105676658)*spread_t;
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
     model->J_star_xx = J_star_xx;
@@ -370,7 +415,9 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
+    model->legs_size = legs_size;
     model->platform_mass = platform_mass;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real rps_base_point_x = params->rps_base_point[leg][0];
         const real rps_base_point_y = params->rps_base_point[leg][1];
@@ -399,13 +446,6 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         const real rps_link2_inertia_zz = params->rps_link2_inertia[leg][2][2];
         static const signed char signs_branch_1[] = {1, 1, 1};
         const real branch_1 = signs_branch_1[leg];
-        /* (rps-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = rps_base_point_x*rps_base_point_x + rps_base_point_y*rps_base_point_y
-            + rps_base_point_z*rps_base_point_z;
-        const real size_t_2 = rps_platform_point_x*rps_platform_point_x +
-            rps_platform_point_y*rps_platform_point_y + rps_platform_point_z*rps_platform_point_z;
-        const real size_t_3 = size_t_ + size_t_2;
-        const real size_ = root(size_t_3);
         /* (rps-G4) first moment of link 2 about the origin of link 2 */
         const real h_2_x = rps_link2_centre_of_mass_x*rps_link2_mass;
         const real h_2_y = rps_link2_centre_of_mass_y*rps_link2_mass;
@@ -468,9 +508,17 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
         model->rps_platform_point_x[leg] = rps_platform_point_x;
         model->rps_platform_point_y[leg] = rps_platform_point_y;
         model->rps_platform_point_z[leg] = rps_platform_point_z;
-        model->size_[leg] = size_;
-        model->size_t_3[leg] = size_t_3;
+        total_rps_x += rps_platform_point_x;
+        total_rps_y += rps_platform_point_y;
+        total_rps_z += rps_platform_point_z;
     }
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_rps_x;
+    const real b_c_y = R(0.3333333333333333)*total_rps_y;
+    const real b_c_z = R(0.3333333333333333)*total_rps_z;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     return TRIPOD_3RPS_OK;
 }
 
@@ -479,6 +527,9 @@ int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *mod
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -488,23 +539,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -512,6 +560,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -540,47 +589,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -601,7 +653,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -678,9 +730,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -715,8 +769,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -756,6 +810,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define MET BY_TYPE(5e-6, 1e-14, 1e-17)
@@ -788,8 +865,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     for (size_t i = 0; i < 3; ++i) {
         to[i] = X[i] + part*step[i];
     }
@@ -968,7 +1045,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1020,8 +1097,6 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -1210,8 +1285,8 @@ INLINE void dynamics_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
         o->entry[12][k] = u_1_tip_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -1506,7 +1581,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_14[k] = J_star_t_14;
         s->J_star_t_15[k] = J_star_t_15;
         s->J_star_t_17[k] = J_star_t_17;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1545,8 +1620,6 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -1650,8 +1723,8 @@ INLINE void M_legs_rps(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_rps_yy_3 */
         o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_rps_yz_3 */
         o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_rps_zz_3 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -1927,7 +2000,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1976,8 +2049,6 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -2067,8 +2138,8 @@ INLINE void Z_legs_rps(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_rps_x_2 */
         o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_rps_y_2 */
         o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_rps_z_2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -2212,7 +2283,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2247,8 +2318,6 @@ INLINE void H_legs_rps(const prepared *m, size_t leg, size_t legs, const H_value
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -2289,8 +2358,8 @@ INLINE void H_legs_rps(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[3][k] = H_a_2_x;
         o->entry[4][k] = H_a_2_y;
         o->entry[5][k] = H_a_2_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -2387,7 +2456,7 @@ INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2534,7 +2603,7 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2788,7 +2857,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2846,8 +2915,6 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -2964,8 +3031,8 @@ INLINE void required_legs_rps(const prepared *m, size_t leg, size_t legs, const 
         o->entry[9][k] = Hk_a_1_x;
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -3111,7 +3178,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3146,7 +3213,6 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t leg, size_t le
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z - rps_base_point_x;
@@ -3168,7 +3234,7 @@ INLINE void inverse_kinematics_legs_rps(const prepared *m, size_t leg, size_t le
         const real q_1 = angle(inv_root_1*py_1, inv_root_1*px_1);
         o->entry[0][k] = q_1;
         o->entry[1][k] = root_1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625));
     }
 }
 
@@ -3292,7 +3358,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3333,8 +3399,6 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t leg, size_t legs, con
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -3371,8 +3435,8 @@ INLINE void joint_rates_legs_rps(const prepared *m, size_t leg, size_t legs, con
             S_dot_z*(c_1*rps_base_frame_zy - rps_base_frame_zx*s_1));
         o->entry[0][k] = qd_1;
         o->entry[1][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -3519,7 +3583,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3567,8 +3631,6 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -3630,8 +3692,8 @@ INLINE void joint_accelerations_legs_rps(const prepared *m, size_t leg, size_t l
         const real qdd_1 = inv_root_1*rel_y;
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -3737,7 +3799,7 @@ INLINE void constraints_before(size_t w, const real *X, constraints_values *s, v
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3920,7 +3982,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3978,8 +4040,6 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z;
@@ -4072,8 +4132,8 @@ INLINE void legs_legs_rps(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[6][k] = rps_base_frame_xz;
         o->entry[7][k] = rps_base_frame_yz;
         o->entry[8][k] = rps_base_frame_zz;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(root_1) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
     }
 }
 
@@ -4186,7 +4246,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t_2[k] = potential_t_2;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4232,7 +4292,6 @@ INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const
         const real rps_platform_point_x = m->rps_platform_point_x[i];
         const real rps_platform_point_y = m->rps_platform_point_y[i];
         const real rps_platform_point_z = m->rps_platform_point_z[i];
-        const real size_t_3 = m->size_t_3[i];
         /* (rps-K1) from the base point to the connection point */
         const real S_x = t_x + R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
             R_xz*rps_platform_point_z - rps_base_point_x;
@@ -4260,7 +4319,7 @@ INLINE void potential_legs_rps(const prepared *m, size_t leg, size_t legs, const
             b_r1_x*rps_link1_mass + rps_link2_mass*(b_r1_x + root_1)) + (c_1*g_r0_y -
             g_r0_x*s_1)*(h_1_y + h_2_y + b_r1_y*rps_link1_mass + b_r1_y*rps_link2_mass);
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_3 : potential_t_3;  /* total_rps */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625));
     }
 }
 
@@ -4311,6 +4370,243 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 130 mul, 99 add, 3 div, 7 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[13][8], singular[8];
+} condition_results_rps;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_rps(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_rps *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real branch_1 = m->branch_1[i];
+        const real rps_base_frame_xx = m->rps_base_frame_xx[i];
+        const real rps_base_frame_xy = m->rps_base_frame_xy[i];
+        const real rps_base_frame_xz = m->rps_base_frame_xz[i];
+        const real rps_base_frame_yx = m->rps_base_frame_yx[i];
+        const real rps_base_frame_yy = m->rps_base_frame_yy[i];
+        const real rps_base_frame_yz = m->rps_base_frame_yz[i];
+        const real rps_base_frame_zx = m->rps_base_frame_zx[i];
+        const real rps_base_frame_zy = m->rps_base_frame_zy[i];
+        const real rps_base_frame_zz = m->rps_base_frame_zz[i];
+        const real rps_base_point_x = m->rps_base_point_x[i];
+        const real rps_base_point_y = m->rps_base_point_y[i];
+        const real rps_base_point_z = m->rps_base_point_z[i];
+        const real rps_platform_point_x = m->rps_platform_point_x[i];
+        const real rps_platform_point_y = m->rps_platform_point_y[i];
+        const real rps_platform_point_z = m->rps_platform_point_z[i];
+        /* (rps-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*rps_platform_point_x + R_xy*rps_platform_point_y +
+            R_xz*rps_platform_point_z;
+        const real q_in_base_y = R_yx*rps_platform_point_x + R_yy*rps_platform_point_y +
+            R_yz*rps_platform_point_z;
+        const real q_in_base_z = R_zx*rps_platform_point_x + R_zy*rps_platform_point_y +
+            R_zz*rps_platform_point_z;
+        const real S_x = q_in_base_x + t_x - rps_base_point_x;
+        const real S_y = q_in_base_y + t_y - rps_base_point_y;
+        const real S_z = q_in_base_z + t_z - rps_base_point_z;
+        /* (rps-K2) component along the reference direction */
+        const real px_1 = S_x*rps_base_frame_xx + S_y*rps_base_frame_yx + S_z*rps_base_frame_zx;
+        /* (rps-K3) component across the reference direction */
+        const real py_1 = S_x*rps_base_frame_xy + S_y*rps_base_frame_yy + S_z*rps_base_frame_zy;
+        /* (rps-K5) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (rps-K6) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (rps-K7) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*px_1;
+        /* (rps-K8) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*py_1;
+        /* (rps-V4) reciprocal vector 1 */
+        const real axis_x_rps_axes1_in_base_x = c_1*rps_base_frame_xx + rps_base_frame_xy*s_1;
+        const real axis_x_rps_axes1_in_base_y = c_1*rps_base_frame_yx + rps_base_frame_yy*s_1;
+        const real axis_x_rps_axes1_in_base_z = c_1*rps_base_frame_zx + rps_base_frame_zy*s_1;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_2_x = axis_x_rps_axes1_in_base_z*q_in_base_y -
+            axis_x_rps_axes1_in_base_y*q_in_base_z;
+        const real H_a_2_y = axis_x_rps_axes1_in_base_x*q_in_base_z -
+            axis_x_rps_axes1_in_base_z*q_in_base_x;
+        const real H_a_2_z = axis_x_rps_axes1_in_base_y*q_in_base_x -
+            axis_x_rps_axes1_in_base_x*q_in_base_y;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real Hk_a_1_x = q_in_base_y*rps_base_frame_zz - q_in_base_z*rps_base_frame_yz;
+        const real Hk_a_1_y = q_in_base_z*rps_base_frame_xz - q_in_base_x*rps_base_frame_zz;
+        const real Hk_a_1_z = q_in_base_x*rps_base_frame_yz - q_in_base_y*rps_base_frame_xz;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - rps_platform_point_x;
+        const real spread_t_3 = b_c_y - rps_platform_point_y;
+        const real spread_t_4 = b_c_z - rps_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (rps-K5) squared amplitude */
+        const real pivot_size = magnitude(rho2_1);
+        /* (rps-V4) reciprocal vector 1 */
+        const real pivot_size_2 = magnitude(root_1);
+        /* (rps-N27) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(R(1.3333333333333333)*root(pivot_size),
+            R(1.3333333333333333)*pivot_size_2);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_rps */
+        o->entry[0][k] = axis_x_rps_axes1_in_base_x;
+        o->entry[1][k] = axis_x_rps_axes1_in_base_y;
+        o->entry[2][k] = axis_x_rps_axes1_in_base_z;
+        o->entry[3][k] = H_a_2_x;
+        o->entry[4][k] = H_a_2_y;
+        o->entry[5][k] = H_a_2_z;
+        o->entry[6][k] = rps_base_frame_xz;
+        o->entry[7][k] = rps_base_frame_yz;
+        o->entry[8][k] = rps_base_frame_zz;
+        o->entry[9][k] = Hk_a_1_x;
+        o->entry[10][k] = Hk_a_1_y;
+        o->entry[11][k] = Hk_a_1_z;
+        o->entry[12][k] = least_pivots;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.5625)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.75));
+    }
+}
+
+INLINE void condition_place_rps(size_t w, const condition_results_rps *o, size_t leg, size_t
+    first, real *H, real *Hk, real *pivots, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        H[(9 + leg)*w + k] = o->entry[3][first + k];
+        H[(12 + leg)*w + k] = o->entry[4][first + k];
+        H[(15 + leg)*w + k] = o->entry[5][first + k];
+        Hk[(leg)*w + k] = o->entry[6][first + k];
+        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
+        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
+        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
+        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
+        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
+        pivots[(leg)*w + k] = o->entry[12][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_rps = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_rps);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_rps results_rps;
+    clear(reach, 3*w);
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_rps(m, 0, 1, s, 0, 3, 0, &results_rps);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_rps(w, &results_rps, leg, leg, H, Hk, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_rps.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_rps.sum, 0, sizeof results_rps.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_rps(m, leg, 0, s, 1, w, 1, &results_rps);
+            condition_place_rps(w, &results_rps, leg, 0, H, Hk, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_rps.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -4405,12 +4701,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int tripod_3rps_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 6) ? TRIPOD_3RPS_OK : TRIPOD_3RPS_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 6, 1, &code, completed);
     return code;
 }
@@ -4468,18 +4765,20 @@ int tripod_3rps_energy(const prepared *m, const real *X, const real *V, real *ki
     return code;
 }
 
-/* Largest residual of the driven joints and constraints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints and constraints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {1, 3, 5};
     real q[6];
     int code = tripod_3rps_inverse_kinematics(m, X, q);
+    if (code != TRIPOD_3RPS_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
-    if (code == TRIPOD_3RPS_OK) {
-        code = tripod_3rps_constraints(m, X, gap + 3);
-    }
+    code = tripod_3rps_constraints(m, X, gap + 3);
     for (size_t i = 3; i < 6; ++i) {
         gap[i] = -gap[i];
     }
@@ -4492,13 +4791,13 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[18];
     int code = tripod_3rps_H(m, X, H);
-    fill_rows(3, H, gap, a);
     real Hk[18];
     if (code == TRIPOD_3RPS_OK) {
         code = tripod_3rps_Hk(m, X, Hk);
     }
-    fill_rows(3, Hk, gap + 3, a + 21);
     if (code == TRIPOD_3RPS_OK) {
+        fill_rows(3, H, gap, a);
+        fill_rows(3, Hk, gap + 3, a + 21);
         least_squares(6, 6, a, step);
     }
     return code;
@@ -4507,7 +4806,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int tripod_3rps_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 6 };
-    real found[7], gap[GAPS], trial[7], next[GAPS], step[6];
+    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : TRIPOD_3RPS_INVALID;
@@ -4538,19 +4837,20 @@ int tripod_3rps_forward_kinematics(const prepared *m, const real *q_actuated, co
 
 int tripod_3rps_project(const prepared *m, const real *X, real *projected)
 {
-    real found[7], trial[7], gap[3], step[6];
+    real found[7], trial[7], gap[3], step[6] = {0};
     real a[BIG*(BIG + 1)], Hk[18];
     memcpy(found, X, sizeof found);
     int code = tripod_3rps_constraints(m, found, gap);
     for (int n = 0; n < 50 && code == TRIPOD_3RPS_OK && largest(gap, 3) > MET; ++n) {
         code = tripod_3rps_Hk(m, found, Hk);
-        if (code == TRIPOD_3RPS_OK) {
-            fill_rows(3, Hk, gap, a);
-            least_squares(3, 6, a, step);
-            moved(found, step, -1, trial);
-            memcpy(found, trial, sizeof found);
-            code = tripod_3rps_constraints(m, found, gap);
+        if (code != TRIPOD_3RPS_OK) {
+            break;
         }
+        fill_rows(3, Hk, gap, a);
+        least_squares(3, 6, a, step);
+        moved(found, step, -1, trial);
+        memcpy(found, trial, sizeof found);
+        code = tripod_3rps_constraints(m, found, gap);
         if (!(largest(step, 6) > MET/10)) {
             break;
         }
@@ -4562,16 +4862,144 @@ int tripod_3rps_project(const prepared *m, const real *X, real *projected)
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *Hk, real *pivots)
+{
+    static const size_t moments[] = {3, 4, 5};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(7, 1, X, t->invalid);
+    condition_run(m, 1, X, H, Hk, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            H[moments[i]*3 + j] /= length;
+        }
+        for (size_t j = 0; j < 3; ++j) {
+            Hk[moments[i]*3 + j] /= length;
+        }
+    }
+    check(18, 1, H, t->overflow);
+    check(18, 1, Hk, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int tripod_3rps_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[18], a[18], found[3], pivots[3];
+    real Hk[18];
+    const int code = matrices(m, X, H, Hk, pivots);
+    if (code != TRIPOD_3RPS_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(6, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
+int tripod_3rps_condition_constrained(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[18], a[36], found[6], pivots[3];
+    real Hk[18];
+    const int code = matrices(m, X, H, Hk, pivots);
+    if (code != TRIPOD_3RPS_OK) {
+        refuse(6, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*6 + j] = H[i*3 + j];
+        }
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*6 + 3 + j] = Hk[i*3 + j];
+        }
+    }
+    singular_values(6, 6, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int tripod_3rps_rotation(const real *X, real *R)
 {
-    const real *const p = X + 3;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 7) && n > 0 && is_finite(n) ? TRIPOD_3RPS_OK : TRIPOD_3RPS_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 3, p);
+    const int code = all_finite(X, 7) && all_finite(p, 4) ? TRIPOD_3RPS_OK : TRIPOD_3RPS_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -4580,11 +5008,8 @@ int tripod_3rps_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[7] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[3 + i] = p[i]/n;
-    }
+    unit(p, found + 3);
     memcpy(found, t, 3*sizeof *t);
     const int code = all_finite(found, 7) ? TRIPOD_3RPS_OK : TRIPOD_3RPS_INVALID;
     deliver(found, 7, 1, &code, X);
@@ -4607,6 +5032,10 @@ int tripod_3rps_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(7, X);
+        return TRIPOD_3RPS_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -4652,6 +5081,11 @@ size_t tripod_3rps_M_batch(const tripod_3rps_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_M(model, X + 7*(i + k), M + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4676,6 +5110,11 @@ size_t tripod_3rps_Z_batch(const tripod_3rps_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4699,6 +5138,11 @@ size_t tripod_3rps_H_batch(const tripod_3rps_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 7*i, H + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_H(model, X + 7*(i + k), H + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4723,6 +5167,11 @@ size_t tripod_3rps_Hk_batch(const tripod_3rps_model *model, size_t n, const trip
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Hk_any(model, LANES, X + 7*i, Hk + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4748,6 +5197,12 @@ size_t tripod_3rps_dynamics_batch(const tripod_3rps_model *model, size_t n, cons
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
+                    k), H + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4772,6 +5227,11 @@ size_t tripod_3rps_constraints_batch(const tripod_3rps_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         constraints_any(model, LANES, X + 7*i, residual + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_constraints(model, X + 7*(i + k), residual + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4796,6 +5256,11 @@ size_t tripod_3rps_constraint_bias_batch(const tripod_3rps_model *model, size_t 
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         constraint_bias_any(model, LANES, X + 7*i, V + 6*i, bias + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4820,6 +5285,11 @@ size_t tripod_3rps_inverse_kinematics_batch(const tripod_3rps_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_inverse_kinematics(model, X + 7*(i + k), q + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4844,6 +5314,11 @@ size_t tripod_3rps_joint_rates_batch(const tripod_3rps_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4869,6 +5344,12 @@ size_t tripod_3rps_joint_accelerations_batch(const tripod_3rps_model *model, siz
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
+                    accelerations + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4897,6 +5378,12 @@ size_t tripod_3rps_inverse_dynamics_batch(const tripod_3rps_model *model, size_t
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
             3*i, lambda + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench
+                    ? wrench + 6*(i + k) : NULL, tau + 3*(i + k), lambda + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4925,6 +5412,12 @@ size_t tripod_3rps_forward_dynamics_batch(const tripod_3rps_model *model, size_t
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A +
             6*i, lambda + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3RPS_OK) {
+                codes[k] = tripod_3rps_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k), lambda + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -4936,13 +5429,13 @@ size_t tripod_3rps_forward_dynamics_batch(const tripod_3rps_model *model, size_t
 }
 
 size_t tripod_3rps_complete_acceleration_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
-    *completed, int *status)
+    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
+    tripod_3rps_real *wrench, tripod_3rps_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3rps_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, completed +
-            6*i);
+        const int code = tripod_3rps_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ?
+            wrench + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -4979,6 +5472,28 @@ size_t tripod_3rps_forward_kinematics_batch(const tripod_3rps_model *model, size
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3rps_forward_kinematics(model, q_actuated + 3*i, X0 + 7*i, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3rps_condition_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3rps_condition(model, X + 7*i, sigma + 3*i, legs + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3rps_condition_constrained_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3rps_condition_constrained(model, X + 7*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

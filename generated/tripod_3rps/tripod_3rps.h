@@ -20,7 +20,16 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * Quaternions have any length from 1.1e-154 to 1.3e154 (float: 1e-19 to 1e19); others are INVALID, as
+ * their squares are no numbers with all digits.  tripod_3rps_rotation takes shorter ones too.
+ *
+ * OK is no promise of good conditioning: ask tripod_3rps_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so tripod_3rps.c refuses them unless TRIPOD_3RPS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as TRIPOD_3RPS_OK.
  */
 #ifndef TRIPOD_3RPS_H_INCLUDED
 #define TRIPOD_3RPS_H_INCLUDED
@@ -84,8 +93,8 @@ typedef struct {
 /* What depends on the parameters alone; set by tripod_3rps_prepare, then only read. */
 typedef struct {
     tripod_3rps_real J_star_t_6, J_star_t_8, J_star_xx, J_star_xy, J_star_xz, J_star_yy, J_star_yz,
-            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, platform_mass;
+            J_star_zz, Z_p_t, Z_p_t_2, Z_p_t_3, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, platform_mass, spread_t;
     /* legs of type rps */
     tripod_3rps_real J_group_1_zz[3], b_r0_x[3], b_r0_y[3], branch_1[3], g_r0_x[3], g_r0_y[3],
             h_1_x[3], h_1_y[3], h_2_x[3], h_2_y[3], potential_t[3], rps_base_frame_xx[3],
@@ -93,16 +102,18 @@ typedef struct {
             rps_base_frame_yz[3], rps_base_frame_zx[3], rps_base_frame_zy[3], rps_base_frame_zz[3],
             rps_base_point_x[3], rps_base_point_y[3], rps_base_point_z[3], rps_link1_mass[3],
             rps_link2_mass[3], rps_platform_point_x[3], rps_platform_point_y[3],
-            rps_platform_point_z[3], size_[3], size_t_3[3];
+            rps_platform_point_z[3];
 } tripod_3rps_model;
 
 extern const tripod_3rps_params tripod_3rps_default_params;
 extern const tripod_3rps_real tripod_3rps_HOME_X[TRIPOD_3RPS_NQ];
 extern const tripod_3rps_real tripod_3rps_HOME_Q[TRIPOD_3RPS_NJ];
 
-/* Prepare a model.  TRIPOD_3RPS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  TRIPOD_3RPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3rps_prepare(const tripod_3rps_params *params, tripod_3rps_model *model);
 
 /* Inertia matrix M. 309 mul, 267 add, 3 div, 3 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -194,13 +205,14 @@ size_t tripod_3rps_forward_dynamics_batch(const tripod_3rps_model *model, size_t
     tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *tau, const
     tripod_3rps_real *wrench, tripod_3rps_real *A, tripod_3rps_real *lambda, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int tripod_3rps_complete_acceleration(const tripod_3rps_model *model, const tripod_3rps_real *X,
-    const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real *completed);
+    const tripod_3rps_real *V, const tripod_3rps_real *A, const tripod_3rps_real *wrench,
+    tripod_3rps_real *completed);
 size_t tripod_3rps_complete_acceleration_batch(const tripod_3rps_model *model, size_t n, const
-    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, tripod_3rps_real
-    *completed, int *status);
+    tripod_3rps_real *X, const tripod_3rps_real *V, const tripod_3rps_real *A, const
+    tripod_3rps_real *wrench, tripod_3rps_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 267 mul, 198 add, 3 div, 3
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -227,6 +239,22 @@ int tripod_3rps_forward_kinematics(const tripod_3rps_model *model, const tripod_
 size_t tripod_3rps_forward_kinematics_batch(const tripod_3rps_model *model, size_t n, const
     tripod_3rps_real *q_actuated, const tripod_3rps_real *X0, tripod_3rps_real *X, int *status);
 
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 130 mul, 99 add, 3 div, 7 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (3). */
+int tripod_3rps_condition(const tripod_3rps_model *model, const tripod_3rps_real *X,
+    tripod_3rps_real *sigma, tripod_3rps_real *legs);
+size_t tripod_3rps_condition_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status);
+
+/* The same of [H Hk], which inverse dynamics solves. 130 mul, 99 add, 3 div, 7 sqrt, 0 trig; the
+   singular values apart. In: X (NQ). Out: sigma (6), legs (3). */
+int tripod_3rps_condition_constrained(const tripod_3rps_model *model, const tripod_3rps_real *X,
+    tripod_3rps_real *sigma, tripod_3rps_real *legs);
+size_t tripod_3rps_condition_constrained_batch(const tripod_3rps_model *model, size_t n, const
+    tripod_3rps_real *X, tripod_3rps_real *sigma, tripod_3rps_real *legs, int *status);
+
 /* The nearest pose on which the constraints hold. In: X (NQ). Out: projected (NQ). */
 int tripod_3rps_project(const tripod_3rps_model *model, const tripod_3rps_real *X,
     tripod_3rps_real *projected);
@@ -238,7 +266,8 @@ int tripod_3rps_rotation(const tripod_3rps_real *X, tripod_3rps_real *R);
 size_t tripod_3rps_rotation_batch(size_t n, const tripod_3rps_real *X, tripod_3rps_real *R, int
     *status);
 
-/* X of the platform at origin t with rotation matrix R. In: t (3), R (3 x 3). Out: X (NQ). */
+/* X of the platform at origin t with rotation matrix R. INVALID where R has not orthonormal rows,
+   to 1e-06 (float: 1e-5), and determinant +1. In: t (3), R (3 x 3). Out: X (NQ). */
 int tripod_3rps_pose(const tripod_3rps_real *t, const tripod_3rps_real *R, tripod_3rps_real *X);
 size_t tripod_3rps_pose_batch(size_t n, const tripod_3rps_real *t, const tripod_3rps_real *R,
     tripod_3rps_real *X, int *status);

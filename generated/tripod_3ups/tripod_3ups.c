@@ -3,6 +3,12 @@
 
 #include "tripod_3ups.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(TRIPOD_3UPS_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define TRIPOD_3UPS_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef tripod_3ups_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -285,26 +323,26 @@ const tripod_3ups_real tripod_3ups_HOME_Q[TRIPOD_3UPS_NJ] = {R(-0.5), R(0.1), R(
 static int acceptable(const tripod_3ups_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->ups_base_point[0][0], 9);
-    ok &= all_finite(&p->ups_base_frame[0][0][0], 27);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->ups_base_point[0][0], 9);
+    ok &= all_within(&p->ups_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->ups_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->ups_platform_point[0][0], 9);
-    ok &= all_finite(&p->ups_link2_mass[0], 3);
+    ok &= all_within(&p->ups_platform_point[0][0], 9);
+    ok &= all_within(&p->ups_link2_mass[0], 3);
     ok &= none_negative(&p->ups_link2_mass[0], 3);
-    ok &= all_finite(&p->ups_link2_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->ups_link2_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->ups_link2_inertia[0][0][0], 3);
-    ok &= all_finite(&p->ups_link3_mass[0], 3);
+    ok &= all_within(&p->ups_link2_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->ups_link2_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->ups_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->ups_link3_mass[0], 3);
     ok &= none_negative(&p->ups_link3_mass[0], 3);
-    ok &= all_finite(&p->ups_link3_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->ups_link3_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->ups_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->ups_link3_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->ups_link3_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->ups_link3_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -318,6 +356,9 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     real total_ups_x = 0;
     real total_ups_y = 0;
     real total_ups_z = 0;
+    real total_ups_x_2 = 0;
+    real total_ups_y_2 = 0;
+    real total_ups_z_2 = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -329,9 +370,15 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     const real h_star_t = platform_centre_of_mass_x*platform_mass;
     const real h_star_t_2 = platform_centre_of_mass_y*platform_mass;
     const real h_star_t_3 = platform_centre_of_mass_z*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = R(1.385640646055102)*spread_t;
     model->gravity_x = gravity_x;
     model->gravity_y = gravity_y;
     model->gravity_z = gravity_z;
+    model->legs_size = legs_size;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real ups_base_point_x = params->ups_base_point[leg][0];
         const real ups_base_point_y = params->ups_base_point[leg][1];
@@ -372,13 +419,6 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         const real branch_1 = signs_branch_1[leg];
         static const signed char signs_branch_2[] = {1, 1, 1};
         const real branch_2 = signs_branch_2[leg];
-        /* (ups-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = ups_base_point_x*ups_base_point_x + ups_base_point_y*ups_base_point_y
-            + ups_base_point_z*ups_base_point_z;
-        const real size_t_2 = ups_platform_point_x*ups_platform_point_x +
-            ups_platform_point_y*ups_platform_point_y + ups_platform_point_z*ups_platform_point_z;
-        const real size_t_3 = size_t_ + size_t_2;
-        const real size_ = root(size_t_3);
         /* (ups-G3) inertia tensor of link 2 about the origin of link 2 */
         const real J_2_t = ups_link2_centre_of_mass_x*ups_link2_centre_of_mass_x;
         const real J_2_t_2 = ups_link2_centre_of_mass_y*ups_link2_centre_of_mass_y;
@@ -471,8 +511,6 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         model->h_group_2_x[leg] = h_group_2_x;
         model->h_group_2_y[leg] = h_group_2_y;
         model->h_group_2_z[leg] = h_group_2_z;
-        model->size_[leg] = size_;
-        model->size_t_3[leg] = size_t_3;
         model->ups_base_frame_xx[leg] = ups_base_frame_xx;
         model->ups_base_frame_xy[leg] = ups_base_frame_xy;
         model->ups_base_frame_xz[leg] = ups_base_frame_xz;
@@ -494,6 +532,9 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
         total_ups_x += h_star_t_4;
         total_ups_y += h_star_t_5;
         total_ups_z += h_star_t_6;
+        total_ups_x_2 += ups_platform_point_x;
+        total_ups_y_2 += ups_platform_point_y;
+        total_ups_z_2 += ups_platform_point_z;
     }
     /* (L1) mass of the platform with the gathered masses */
     const real m_star = platform_mass + total_ups;
@@ -505,9 +546,16 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
     const real h_star_x = h_star_t + total_ups_x;
     const real h_star_y = h_star_t_2 + total_ups_y;
     const real h_star_z = h_star_t_3 + total_ups_z;
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_ups_x_2;
+    const real b_c_y = R(0.3333333333333333)*total_ups_y_2;
+    const real b_c_z = R(0.3333333333333333)*total_ups_z_2;
     model->Z_p_x = Z_p_x;
     model->Z_p_y = Z_p_y;
     model->Z_p_z = Z_p_z;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
@@ -520,6 +568,9 @@ int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *mod
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -529,23 +580,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -553,6 +601,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -581,47 +630,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -642,7 +694,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -719,9 +771,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -756,8 +810,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -898,8 +952,6 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         const real h_group_2_x = m->h_group_2_x[i];
         const real h_group_2_y = m->h_group_2_y[i];
         const real h_group_2_z = m->h_group_2_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -1077,9 +1129,10 @@ INLINE void dynamics_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -1227,8 +1280,6 @@ INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -1332,9 +1383,10 @@ INLINE void M_legs_ups(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[3][k] = add ? o->sum[3][k] + Q_t_14 : Q_t_14;  /* total_ups_yy */
         o->sum[4][k] = add ? o->sum[4][k] + Q_t_15 : Q_t_15;  /* total_ups_yz */
         o->sum[5][k] = add ? o->sum[5][k] + Q_t_17 : Q_t_17;  /* total_ups_zz */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -1477,8 +1529,6 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
         const real h_group_2_x = m->h_group_2_x[i];
         const real h_group_2_y = m->h_group_2_y[i];
         const real h_group_2_z = m->h_group_2_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -1606,9 +1656,10 @@ INLINE void Z_legs_ups(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[0][k] = add ? o->sum[0][k] + U_in_base_x : U_in_base_x;  /* total_ups_x */
         o->sum[1][k] = add ? o->sum[1][k] + U_in_base_y : U_in_base_y;  /* total_ups_y */
         o->sum[2][k] = add ? o->sum[2][k] + U_in_base_z : U_in_base_z;  /* total_ups_z */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -1715,8 +1766,6 @@ INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_value
         const real t_y = s->t_y[j];
         const real t_z = s->t_z[j];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -1757,9 +1806,9 @@ INLINE void H_legs_ups(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
     }
 }
 
@@ -1898,8 +1947,6 @@ INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2039,9 +2086,10 @@ INLINE void required_legs_ups(const prepared *m, size_t leg, size_t legs, const 
         o->entry[0][k] = axis_x_x;
         o->entry[1][k] = axis_x_y;
         o->entry[2][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2141,7 +2189,6 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t le
         const real t_z = s->t_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2186,8 +2233,8 @@ INLINE void inverse_kinematics_legs_ups(const prepared *m, size_t leg, size_t le
         o->entry[0][k] = q_1;
         o->entry[1][k] = q_2;
         o->entry[2][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -2281,8 +2328,6 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, con
         const real t_dot_z = s->t_dot_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2343,9 +2388,10 @@ INLINE void joint_rates_legs_ups(const prepared *m, size_t leg, size_t legs, con
         o->entry[0][k] = qd_1;
         o->entry[1][k] = qd_2;
         o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2457,8 +2503,6 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t l
         const real t_ddot_z = s->t_ddot_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2538,9 +2582,10 @@ INLINE void joint_accelerations_legs_ups(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = qdd_1;
         o->entry[1][k] = qdd_2;
         o->entry[2][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2666,8 +2711,6 @@ INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2811,9 +2854,10 @@ INLINE void legs_legs_ups(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[3][k] = axis_x_x;
         o->entry[4][k] = axis_x_y;
         o->entry[5][k] = axis_x_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_1) >
-            TOLERANCE*size_) + UNLESS(magnitude(root_2) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2908,7 +2952,6 @@ INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_t_3 = m->size_t_3[i];
         const real ups_base_frame_xx = m->ups_base_frame_xx[i];
         const real ups_base_frame_xy = m->ups_base_frame_xy[i];
         const real ups_base_frame_xz = m->ups_base_frame_xz[i];
@@ -2963,8 +3006,8 @@ INLINE void potential_legs_ups(const prepared *m, size_t leg, size_t legs, const
             ups_link2_mass*(b_r0_z*s_2 - b_r1_y*c_2)) - (-c_2*g_r0_z - g_r1_y*s_2)*(h_2_z + h_3_z
             - ups_link2_mass*(-b_r0_z*c_2 - b_r1_y*s_2));
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_ups */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -3015,6 +3058,170 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 73 mul, 69 add, 3 div, 13 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[4][8], singular[8];
+} condition_results_ups;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        lengths[1*w + k] = legs_size;
+    }
+}
+
+INLINE void condition_legs_ups(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_ups *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real ups_base_frame_xx = m->ups_base_frame_xx[i];
+        const real ups_base_frame_xy = m->ups_base_frame_xy[i];
+        const real ups_base_frame_xz = m->ups_base_frame_xz[i];
+        const real ups_base_frame_yx = m->ups_base_frame_yx[i];
+        const real ups_base_frame_yy = m->ups_base_frame_yy[i];
+        const real ups_base_frame_yz = m->ups_base_frame_yz[i];
+        const real ups_base_frame_zx = m->ups_base_frame_zx[i];
+        const real ups_base_frame_zy = m->ups_base_frame_zy[i];
+        const real ups_base_frame_zz = m->ups_base_frame_zz[i];
+        const real ups_base_point_x = m->ups_base_point_x[i];
+        const real ups_base_point_y = m->ups_base_point_y[i];
+        const real ups_base_point_z = m->ups_base_point_z[i];
+        const real ups_platform_point_x = m->ups_platform_point_x[i];
+        const real ups_platform_point_y = m->ups_platform_point_y[i];
+        const real ups_platform_point_z = m->ups_platform_point_z[i];
+        /* (ups-K1) from the base point to the connection point */
+        const real S_x = t_x + ups_platform_point_x - ups_base_point_x;
+        const real S_y = t_y + ups_platform_point_y - ups_base_point_y;
+        const real S_z = t_z + ups_platform_point_z - ups_base_point_z;
+        /* (ups-K2) component along the reference direction */
+        const real px_1 = S_x*ups_base_frame_xx + S_y*ups_base_frame_yx + S_z*ups_base_frame_zx;
+        /* (ups-K3) component across the reference direction */
+        const real py_1 = S_x*ups_base_frame_xy + S_y*ups_base_frame_yy + S_z*ups_base_frame_zy;
+        /* (ups-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (ups-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (ups-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*ups_base_frame_xz + S_y*ups_base_frame_yz + S_z*ups_base_frame_zz;
+        /* (ups-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (ups-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (ups-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        /* (ups-V5) reciprocal vector 1 */
+        const real axis_x_x = S_x*inv_root_2;
+        const real axis_x_y = S_y*inv_root_2;
+        const real axis_x_z = S_z*inv_root_2;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - ups_platform_point_x;
+        const real spread_t_3 = b_c_y - ups_platform_point_y;
+        const real spread_t_4 = b_c_z - ups_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (ups-K4) squared amplitude */
+        const real pivot_size = magnitude(rho2_1);
+        /* (ups-K13) squared amplitude */
+        const real pivot_size_2 = magnitude(rho2_2);
+        /* (ups-V5) reciprocal vector 1 */
+        const real pivot_size_3 = magnitude(root_1);
+        const real pivot_size_4 = magnitude(root_2);
+        /* (ups-N21) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(lesser(lesser(R(1.25)*root(pivot_size),
+            R(1.25)*root(pivot_size_2)), R(1.25)*pivot_size_3), R(1.25)*pivot_size_4);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_ups */
+        o->entry[0][k] = axis_x_x;
+        o->entry[1][k] = axis_x_y;
+        o->entry[2][k] = axis_x_z;
+        o->entry[3][k] = least_pivots;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_1) > TOLERANCE*R(0.8)) + UNLESS(magnitude(root_2) >
+            TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void condition_place_ups(size_t w, const condition_results_ups *o, size_t leg, size_t
+    first, real *H, real *pivots, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        pivots[(leg)*w + k] = o->entry[3][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_ups = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_ups);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *lengths, real
+    *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_ups results_ups;
+    clear(reach, 3*w);
+    condition_before(m, w, X, s, lengths);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_ups(m, 0, 1, s, 0, 3, 0, &results_ups);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_ups(w, &results_ups, leg, leg, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_ups.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_ups.sum, 0, sizeof results_ups.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_ups(m, leg, 0, s, 1, w, 1, &results_ups);
+            condition_place_ups(w, &results_ups, leg, 0, H, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_ups.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -3094,12 +3301,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int tripod_3ups_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 3) ? TRIPOD_3UPS_OK : TRIPOD_3UPS_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 3, 1, &code, completed);
     return code;
 }
@@ -3150,12 +3358,16 @@ int tripod_3ups_energy(const prepared *m, const real *X, const real *V, real *ki
     return code;
 }
 
-/* Largest residual of the driven joints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {2, 5, 8};
     real q[9];
     int code = tripod_3ups_inverse_kinematics(m, X, q);
+    if (code != TRIPOD_3UPS_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
@@ -3168,8 +3380,8 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[9];
     int code = tripod_3ups_H(m, X, H);
-    fill_rows(3, H, gap, a);
     if (code == TRIPOD_3UPS_OK) {
+        fill_rows(3, H, gap, a);
         least_squares(3, 3, a, step);
     }
     return code;
@@ -3178,7 +3390,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 3 };
-    real found[3], gap[GAPS], trial[3], next[GAPS], step[3];
+    real found[3], gap[GAPS] = {0}, trial[3] = {0}, next[GAPS] = {0}, step[3] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : TRIPOD_3UPS_INVALID;
@@ -3207,6 +3419,97 @@ int tripod_3ups_forward_kinematics(const prepared *m, const real *q_actuated, co
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *pivots)
+{
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(3, 1, X, t->invalid);
+    condition_run(m, 1, X, H, lengths, pivots, reach, t);
+    check(9, 1, H, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int tripod_3ups_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[9], a[9], found[3], pivots[3];
+    const int code = matrices(m, X, H, pivots);
+    if (code != TRIPOD_3UPS_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(3, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 /* ---- one state, and batches ---- */
 
 int tripod_3ups_M(const tripod_3ups_model *model, const tripod_3ups_real *X, tripod_3ups_real *M)
@@ -3223,6 +3526,11 @@ size_t tripod_3ups_M_batch(const tripod_3ups_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 3*i, M + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_M(model, X + 3*(i + k), M + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3247,6 +3555,11 @@ size_t tripod_3ups_Z_batch(const tripod_3ups_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 3*i, V + 3*i, Z + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_Z(model, X + 3*(i + k), V + 3*(i + k), Z + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3270,6 +3583,11 @@ size_t tripod_3ups_H_batch(const tripod_3ups_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_H(model, X + 3*(i + k), H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3295,6 +3613,12 @@ size_t tripod_3ups_dynamics_batch(const tripod_3ups_model *model, size_t n, cons
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 3*i, V + 3*i, M + 9*i, Z + 3*i, H + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_dynamics(model, X + 3*(i + k), V + 3*(i + k), M + 9*(i + k), Z + 3*(i + k),
+                    H + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3319,6 +3643,11 @@ size_t tripod_3ups_inverse_kinematics_batch(const tripod_3ups_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 3*i, q + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_inverse_kinematics(model, X + 3*(i + k), q + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3343,6 +3672,11 @@ size_t tripod_3ups_joint_rates_batch(const tripod_3ups_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 3*i, V + 3*i, rates + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_joint_rates(model, X + 3*(i + k), V + 3*(i + k), rates + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3368,6 +3702,12 @@ size_t tripod_3ups_joint_accelerations_batch(const tripod_3ups_model *model, siz
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, accelerations + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_joint_accelerations(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k),
+                    accelerations + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3396,6 +3736,12 @@ size_t tripod_3ups_inverse_dynamics_batch(const tripod_3ups_model *model, size_t
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 3*i, V + 3*i, A + 3*i, wrench ? wrench + 3*i : NULL, tau +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_inverse_dynamics(model, X + 3*(i + k), V + 3*(i + k), A + 3*(i + k), wrench
+                    ? wrench + 3*(i + k) : NULL, tau + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3424,6 +3770,12 @@ size_t tripod_3ups_forward_dynamics_batch(const tripod_3ups_model *model, size_t
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 3*i, V + 3*i, tau + 3*i, wrench ? wrench + 3*i : NULL, A +
             3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPS_OK) {
+                codes[k] = tripod_3ups_forward_dynamics(model, X + 3*(i + k), V + 3*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 3*(i + k) : NULL, A + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -3435,13 +3787,13 @@ size_t tripod_3ups_forward_dynamics_batch(const tripod_3ups_model *model, size_t
 }
 
 size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
-    *completed, int *status)
+    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
+    tripod_3ups_real *wrench, tripod_3ups_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3ups_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, completed +
-            3*i);
+        const int code = tripod_3ups_complete_acceleration(model, X + 3*i, V + 3*i, A + 3*i, wrench ?
+            wrench + 3*i : NULL, completed + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -3478,6 +3830,17 @@ size_t tripod_3ups_forward_kinematics_batch(const tripod_3ups_model *model, size
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3ups_forward_kinematics(model, q_actuated + 3*i, X0 + 3*i, X + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3ups_condition(model, X + 3*i, sigma + 3*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;

@@ -20,7 +20,13 @@
  * status unless it is NULL, and return how many states failed; a wrench of NULL is none.
  * Outputs of a batch must not overlap its inputs.
  *
- * Fast with -O3 -march=native -fno-math-errno; not with -ffast-math, which breaks the checks.
+ * OK is no promise of good conditioning: ask tripod_3ups_condition.  Single states and batches
+ * agree to 1e-12 times the condition, and in their status unless an intermediate result overflows
+ * or a tested value lies within 1e-6 of its threshold.
+ *
+ * Fast with -O3 -march=native -fno-math-errno.  -ffast-math and -ffinite-math-only break the checks
+ * of what is not finite, so tripod_3ups.c refuses them unless TRIPOD_3UPS_ALLOW_FAST_MATH is defined;
+ * then inputs, parameters and results that are not finite may pass as TRIPOD_3UPS_OK.
  */
 #ifndef TRIPOD_3UPS_H_INCLUDED
 #define TRIPOD_3UPS_H_INCLUDED
@@ -83,27 +89,29 @@ typedef struct {
 
 /* What depends on the parameters alone; set by tripod_3ups_prepare, then only read. */
 typedef struct {
-    tripod_3ups_real Z_p_x, Z_p_y, Z_p_z, gravity_x, gravity_y, gravity_z, h_star_x, h_star_y,
-            h_star_z, m_star;
+    tripod_3ups_real Z_p_x, Z_p_y, Z_p_z, b_c_x, b_c_y, b_c_z, gravity_x, gravity_y, gravity_z,
+            h_star_x, h_star_y, h_star_z, legs_size, m_star, spread_t;
     /* legs of type ups */
     tripod_3ups_real J_group_2_xx[3], J_group_2_xy[3], J_group_2_xz[3], J_group_2_yy[3],
             J_group_2_yz[3], J_group_2_zz[3], Sigma_2_xx[3], Sigma_2_yy[3], Sigma_2_zz[3], b_r0_x[3],
             b_r0_y[3], b_r0_z[3], branch_1[3], branch_2[3], g_r0_x[3], g_r0_y[3], g_r0_z[3], h_2_x[3],
             h_2_y[3], h_2_z[3], h_3_x[3], h_3_y[3], h_3_z[3], h_group_2_x[3], h_group_2_y[3],
-            h_group_2_z[3], size_[3], size_t_3[3], ups_base_frame_xx[3], ups_base_frame_xy[3],
-            ups_base_frame_xz[3], ups_base_frame_yx[3], ups_base_frame_yy[3], ups_base_frame_yz[3],
-            ups_base_frame_zx[3], ups_base_frame_zy[3], ups_base_frame_zz[3], ups_base_point_x[3],
-            ups_base_point_y[3], ups_base_point_z[3], ups_link2_mass[3], ups_link3_mass[3],
-            ups_platform_point_x[3], ups_platform_point_y[3], ups_platform_point_z[3];
+            h_group_2_z[3], ups_base_frame_xx[3], ups_base_frame_xy[3], ups_base_frame_xz[3],
+            ups_base_frame_yx[3], ups_base_frame_yy[3], ups_base_frame_yz[3], ups_base_frame_zx[3],
+            ups_base_frame_zy[3], ups_base_frame_zz[3], ups_base_point_x[3], ups_base_point_y[3],
+            ups_base_point_z[3], ups_link2_mass[3], ups_link3_mass[3], ups_platform_point_x[3],
+            ups_platform_point_y[3], ups_platform_point_z[3];
 } tripod_3ups_model;
 
 extern const tripod_3ups_params tripod_3ups_default_params;
 extern const tripod_3ups_real tripod_3ups_HOME_X[TRIPOD_3UPS_NQ];
 extern const tripod_3ups_real tripod_3ups_HOME_Q[TRIPOD_3UPS_NJ];
 
-/* Prepare a model.  TRIPOD_3UPS_INVALID: a parameter is not finite, a mass negative, an inertia not
-   symmetric, a frame no rotation, or an entry not zero that the structure fixes at zero; then the
-   model is all NaN. */
+/* Prepare a model.  TRIPOD_3UPS_INVALID, and the model is all NaN: a parameter is not finite or beyond
+   1e+12; a mass is negative; an inertia is not symmetric, or has a negative principal moment,
+   to 1e-09 of its largest entry (float: 1e-6); a frame is no rotation or an axis not of length 1, to
+   1e-06 (float: 1e-5); or an entry is not zero, or axes not parallel or
+   perpendicular, that are so by structure, to 1e-09 (float: 1e-6). */
 int tripod_3ups_prepare(const tripod_3ups_params *params, tripod_3ups_model *model);
 
 /* Inertia matrix M. 267 mul, 177 add, 6 div, 6 sqrt, 0 trig. In: X (NQ). Out: M (NV x NV). */
@@ -174,13 +182,14 @@ size_t tripod_3ups_forward_dynamics_batch(const tripod_3ups_model *model, size_t
     tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *tau, const
     tripod_3ups_real *wrench, tripod_3ups_real *A, int *status);
 
-/* A with the entries of undriven extra coordinates taken from their own rows. In: X (NQ), V (NV),
-   A (NV). Out: completed (NV). */
+/* A: there are no passive extra coordinates, whose accelerations would follow. In: X (NQ), V
+   (NV), A (NV), wrench (NW, or NULL). Out: completed (NV). */
 int tripod_3ups_complete_acceleration(const tripod_3ups_model *model, const tripod_3ups_real *X,
-    const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real *completed);
+    const tripod_3ups_real *V, const tripod_3ups_real *A, const tripod_3ups_real *wrench,
+    tripod_3ups_real *completed);
 size_t tripod_3ups_complete_acceleration_batch(const tripod_3ups_model *model, size_t n, const
-    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, tripod_3ups_real
-    *completed, int *status);
+    tripod_3ups_real *X, const tripod_3ups_real *V, const tripod_3ups_real *A, const
+    tripod_3ups_real *wrench, tripod_3ups_real *completed, int *status);
 
 /* Force of each leg on the platform at its platform joint, base axes. 393 mul, 291 add, 6 div, 6
    sqrt, 0 trig; inverse dynamics apart. In: X (NQ), V (NV), A (NV), wrench (NW, or NULL). Out:
@@ -206,6 +215,15 @@ int tripod_3ups_forward_kinematics(const tripod_3ups_model *model, const tripod_
     *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X);
 size_t tripod_3ups_forward_kinematics_batch(const tripod_3ups_model *model, size_t n, const
     tripod_3ups_real *q_actuated, const tripod_3ups_real *X0, tripod_3ups_real *X, int *status);
+
+/* Singular values of H in descending order, moment rows divided by the rms distance of the
+   platform points from their centroid; for every leg the least tested pivot as a fraction of its
+   scale. 73 mul, 69 add, 3 div, 13 sqrt, 0 trig; the singular values apart. In: X (NQ). Out:
+   sigma (3), legs (3). */
+int tripod_3ups_condition(const tripod_3ups_model *model, const tripod_3ups_real *X,
+    tripod_3ups_real *sigma, tripod_3ups_real *legs);
+size_t tripod_3ups_condition_batch(const tripod_3ups_model *model, size_t n, const
+    tripod_3ups_real *X, tripod_3ups_real *sigma, tripod_3ups_real *legs, int *status);
 
 #ifdef __cplusplus
 }

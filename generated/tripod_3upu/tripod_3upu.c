@@ -3,6 +3,12 @@
 
 #include "tripod_3upu.h"
 
+/* Compilers that take every number for finite remove the checks of what is not. */
+#if !defined(TRIPOD_3UPU_ALLOW_FAST_MATH) && (defined(__FAST_MATH__) || defined(_M_FP_FAST) \
+    || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ != 0))
+#error "compile without -ffast-math, or define TRIPOD_3UPU_ALLOW_FAST_MATH: no NaN or status can be relied on"
+#endif
+
 #include <float.h>
 #include <math.h>
 #include <string.h>
@@ -26,10 +32,14 @@ typedef tripod_3upu_model prepared;
 /* A constant that depends on the precision: float, double, long double. */
 #define BY_TYPE(f, d, l) \
     (sizeof(real) == sizeof(float) ? R(f) : sizeof(real) == sizeof(double) ? R(d) : R(l))
-/* Lengths below this fraction of a leg's size count as zero: the root of the machine epsilon. */
+/* Lengths below this fraction of a leg's lever arms count as zero: the root of the machine
+   epsilon. */
 #define TOLERANCE BY_TYPE(3.4526698300124393e-4, 1.4901161193847656e-8, 3.2927225399135962e-10)
 /* Pivots below this fraction of their row count as zero: epsilon^(3/4). */
 #define PIVOT BY_TYPE(6.415e-6, 1.8e-12, 5.975e-15)
+
+/* What is smaller than this fraction has been rounded. */
+#define ROUNDING BY_TYPE(FLT_EPSILON, DBL_EPSILON, LDBL_EPSILON)
 
 #define FUNCTION(name, f, d, l) \
     INLINE real name(real x) { return BY_TYPE(f((float)x), d((double)x), l((long double)x)); }
@@ -48,6 +58,12 @@ INLINE real angle(real y, real x)
 INLINE real larger(real x, real y)
 {
     return x > y ? x : y;
+}
+
+/* The lesser of two, NaN where one is. */
+INLINE real lesser(real x, real y)
+{
+    return x < y || x != x ? x : y;
 }
 
 INLINE real total(const real *x, size_t n)
@@ -170,13 +186,25 @@ INLINE size_t record(const int *code, size_t w, int *status)
 
 /* ---- what parameters must be: entries of n vectors or 3 x 3 matrices one after another ---- */
 
-#define LEAST_ASYMMETRY BY_TYPE(1e-6, 1e-9, 1e-9)
+/* What the reader of specifications allows; floats have less to offer. */
+#define ROUNDED BY_TYPE(1e-5, 1e-06, 1e-06)  /* lengths and products of unit vectors */
+#define OF_LARGEST BY_TYPE(1e-6, 1e-09, 1e-09)  /* of a tensor's entries */
+#define SNAPPED BY_TYPE(1e-6, 1e-09, 1e-09)  /* what is one or zero by structure */
+
+INLINE int all_within(const real *x, size_t n)
+{
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i) {
+        ok &= magnitude(x[i]) <= R(1e+12);
+    }
+    return ok;
+}
 
 INLINE int all_zero(const real *x, size_t n, size_t step)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i) {
-        ok &= magnitude(x[step*i]) <= R(1e-9);
+        ok &= magnitude(x[step*i]) <= SNAPPED;
     }
     return ok;
 }
@@ -194,20 +222,30 @@ INLINE int all_unit(const real *x, size_t n)
 {
     int ok = 1;
     for (size_t i = 0; i < n; ++i, x += 3) {
-        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= R(1e-6);
+        ok &= magnitude(root(x[0]*x[0] + x[1]*x[1] + x[2]*x[2]) - 1) <= ROUNDED;
     }
     return ok;
 }
 
-INLINE int all_symmetric(const real *x, size_t n)
+/* Symmetric tensors whose principal moments are not negative, to OF_LARGEST: those that stay
+   positive definite, by the pivots of Cholesky's elimination, with that much more of each moment. */
+INLINE int all_inertias(const real *x, size_t n)
 {
-    real size = 0, error = 0;
-    for (size_t i = 0; i < 9*n; ++i) {
-        const size_t mirrored = 9*(i/9) + 3*(i%9%3) + i%9/3;
-        size = magnitude(x[i]) > size ? magnitude(x[i]) : size;
-        error = magnitude(x[i] - x[mirrored]) > error ? magnitude(x[i] - x[mirrored]) : error;
+    int ok = 1;
+    for (size_t i = 0; i < n; ++i, x += 9) {
+        real size = 0, a[9];
+        for (size_t e = 0; e < 9; ++e) {
+            size = larger(size, magnitude(x[e]));
+        }
+        for (size_t e = 0; e < 9; ++e) {
+            a[e] = size > 0 ? x[e]/size + (e%4 == 0 ? OF_LARGEST : 0) : (e%4 == 0 ? R(1) : R(0));
+        }
+        ok &= magnitude(a[1] - a[3]) <= OF_LARGEST && magnitude(a[2] - a[6]) <= OF_LARGEST
+            && magnitude(a[5] - a[7]) <= OF_LARGEST;
+        const real yy = a[4] - a[3]*a[3]/a[0], yz = a[7] - a[3]*a[6]/a[0], zz = a[8] - a[6]*a[6]/a[0];
+        ok &= a[0] > 0 && yy > 0 && zz - yz*yz/yy > 0;
     }
-    return error <= LEAST_ASYMMETRY*size;
+    return ok;
 }
 
 INLINE int all_rotations(const real *x, size_t n)
@@ -217,7 +255,7 @@ INLINE int all_rotations(const real *x, size_t n)
         for (size_t e = 0; e < 9; ++e) {
             const real *row = x + 3*(e/3), *other = x + 3*(e%3);
             const real product = row[0]*other[0] + row[1]*other[1] + row[2]*other[2];
-            ok &= magnitude(product - (e/3 == e%3)) <= R(1e-6);
+            ok &= magnitude(product - (e/3 == e%3)) <= ROUNDED;
         }
         ok &= x[0]*(x[4]*x[8] - x[5]*x[7]) + x[1]*(x[5]*x[6] - x[3]*x[8])
             + x[2]*(x[3]*x[7] - x[4]*x[6]) > 0;
@@ -290,28 +328,28 @@ const tripod_3upu_real tripod_3upu_HOME_Q[TRIPOD_3UPU_NJ] = {R(0.5), R(0.1999999
 static int acceptable(const tripod_3upu_params *p)
 {
     int ok = 1;
-    ok &= all_finite(&p->gravity[0], 3);
-    ok &= all_finite(&p->platform_mass, 1);
+    ok &= all_within(&p->gravity[0], 3);
+    ok &= all_within(&p->platform_mass, 1);
     ok &= none_negative(&p->platform_mass, 1);
-    ok &= all_finite(&p->platform_centre_of_mass[0], 3);
-    ok &= all_finite(&p->platform_inertia[0][0], 9);
-    ok &= all_symmetric(&p->platform_inertia[0][0], 1);
-    ok &= all_finite(&p->upu_base_point[0][0], 9);
-    ok &= all_finite(&p->upu_base_frame[0][0][0], 27);
+    ok &= all_within(&p->platform_centre_of_mass[0], 3);
+    ok &= all_within(&p->platform_inertia[0][0], 9);
+    ok &= all_inertias(&p->platform_inertia[0][0], 1);
+    ok &= all_within(&p->upu_base_point[0][0], 9);
+    ok &= all_within(&p->upu_base_frame[0][0][0], 27);
     ok &= all_rotations(&p->upu_base_frame[0][0][0], 3);
-    ok &= all_finite(&p->upu_platform_point[0][0], 9);
-    ok &= all_finite(&p->upu_platform_joint_axis_platform[0][0], 9);
+    ok &= all_within(&p->upu_platform_point[0][0], 9);
+    ok &= all_within(&p->upu_platform_joint_axis_platform[0][0], 9);
     ok &= all_unit(&p->upu_platform_joint_axis_platform[0][0], 3);
-    ok &= all_finite(&p->upu_link2_mass[0], 3);
+    ok &= all_within(&p->upu_link2_mass[0], 3);
     ok &= none_negative(&p->upu_link2_mass[0], 3);
-    ok &= all_finite(&p->upu_link2_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->upu_link2_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->upu_link2_inertia[0][0][0], 3);
-    ok &= all_finite(&p->upu_link3_mass[0], 3);
+    ok &= all_within(&p->upu_link2_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->upu_link2_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->upu_link2_inertia[0][0][0], 3);
+    ok &= all_within(&p->upu_link3_mass[0], 3);
     ok &= none_negative(&p->upu_link3_mass[0], 3);
-    ok &= all_finite(&p->upu_link3_centre_of_mass[0][0], 9);
-    ok &= all_finite(&p->upu_link3_inertia[0][0][0], 27);
-    ok &= all_symmetric(&p->upu_link3_inertia[0][0][0], 3);
+    ok &= all_within(&p->upu_link3_centre_of_mass[0][0], 9);
+    ok &= all_within(&p->upu_link3_inertia[0][0][0], 27);
+    ok &= all_inertias(&p->upu_link3_inertia[0][0][0], 3);
     return ok;
 }
 
@@ -321,6 +359,9 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         memset(model, 0xff, sizeof *model);  /* NaN in every real type */
         return TRIPOD_3UPU_INVALID;
     }
+    real total_upu_x = 0;
+    real total_upu_y = 0;
+    real total_upu_z = 0;
     const real gravity_x = params->gravity[0];
     const real gravity_y = params->gravity[1];
     const real gravity_z = params->gravity[2];
@@ -360,6 +401,10 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     const real Z_p_t = gravity_x*platform_mass;
     const real Z_p_t_2 = gravity_y*platform_mass;
     const real Z_p_t_3 = gravity_z*platform_mass;
+    /* (C2) rms distance of the platform points from their centroid */
+    const real spread_t = R(0.3333333333333333)*root(3);
+    /* (C3) rms size of the legs, taken where the platform points coincide */
+    const real legs_size = R(1.385640646055102)*spread_t;
     model->J_star_t_6 = J_star_t_6;
     model->J_star_t_8 = J_star_t_8;
     model->J_star_xx = J_star_xx;
@@ -377,7 +422,9 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
     model->h_star_x = h_star_x;
     model->h_star_y = h_star_y;
     model->h_star_z = h_star_z;
+    model->legs_size = legs_size;
     model->platform_mass = platform_mass;
+    model->spread_t = spread_t;
     for (size_t leg = 0; leg < 3; ++leg) {
         const real upu_base_point_x = params->upu_base_point[leg][0];
         const real upu_base_point_y = params->upu_base_point[leg][1];
@@ -421,15 +468,6 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         const real branch_1 = signs_branch_1[leg];
         static const signed char signs_branch_2[] = {1, 1, 1};
         const real branch_2 = signs_branch_2[leg];
-        /* (upu-G1) size of the leg, the measure of what is near singular */
-        const real size_t_ = upu_base_point_x*upu_base_point_x + upu_base_point_y*upu_base_point_y
-            + upu_base_point_z*upu_base_point_z;
-        const real size_t_2 = upu_platform_point_x*upu_platform_point_x +
-            upu_platform_point_y*upu_platform_point_y + upu_platform_point_z*upu_platform_point_z;
-        const real size_t_3 = size_t_ + size_t_2;
-        const real size_ = root(size_t_3);
-        /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t = size_*size_t_3;
         /* (upu-G4) first moment of link 3 about the origin of link 3 */
         const real h_3_x = upu_link3_centre_of_mass_x*upu_link3_mass;
         const real h_3_y = upu_link3_centre_of_mass_y*upu_link3_mass;
@@ -511,8 +549,6 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->h_3_x[leg] = h_3_x;
         model->h_3_y[leg] = h_3_y;
         model->h_3_z[leg] = h_3_z;
-        model->size_[leg] = size_;
-        model->size_t_3[leg] = size_t_3;
         model->upu_base_frame_xx[leg] = upu_base_frame_xx;
         model->upu_base_frame_xy[leg] = upu_base_frame_xy;
         model->upu_base_frame_xz[leg] = upu_base_frame_xz;
@@ -533,8 +569,17 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
         model->upu_platform_point_x[leg] = upu_platform_point_x;
         model->upu_platform_point_y[leg] = upu_platform_point_y;
         model->upu_platform_point_z[leg] = upu_platform_point_z;
-        model->volume_c_t[leg] = volume_c_t;
+        total_upu_x += upu_platform_point_x;
+        total_upu_y += upu_platform_point_y;
+        total_upu_z += upu_platform_point_z;
     }
+    /* (C1) centroid of the platform points */
+    const real b_c_x = R(0.3333333333333333)*total_upu_x;
+    const real b_c_y = R(0.3333333333333333)*total_upu_y;
+    const real b_c_z = R(0.3333333333333333)*total_upu_z;
+    model->b_c_x = b_c_x;
+    model->b_c_y = b_c_y;
+    model->b_c_z = b_c_z;
     return TRIPOD_3UPU_OK;
 }
 
@@ -543,6 +588,9 @@ int tripod_3upu_prepare(const tripod_3upu_params *params, tripod_3upu_model *mod
 /* Rows change places only for a pivot that is larger by this factor: less often, and with
    rounding errors as small as with the largest pivots. */
 #define CLEARLY 2
+/* By this factor pivots may differ where the compiler rounds differently: a contraction to
+   fused operations in one place and not in another moves a pivot by epsilon, not by a fraction. */
+#define NEARLY 2
 
 /* other -= factor*row */
 INLINE void subtract(size_t n, real factor, const real *restrict row, real *restrict other)
@@ -552,23 +600,20 @@ INLINE void subtract(size_t n, real factor, const real *restrict row, real *rest
     }
 }
 
-/* Put the row with the largest entry p, from row p on, in place p if that is clearly larger. */
+/* Put the row with the largest entry p, of those below row p that are clearly larger, in place p. */
 INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
 {
-    real most = 0;
+    size_t best = p;
+    real most = CLEARLY*magnitude(a[p*stride + p]);
     for (size_t i = p + 1; i < n; ++i) {
-        most = larger(most, magnitude(a[i*stride + p]));
+        const real size = magnitude(a[i*stride + p]);
+        best = size > most ? i : best;
+        most = larger(size, most);
     }
-    if (most > CLEARLY*magnitude(a[p*stride + p])) {
-        size_t best = p + 1;
-        while (magnitude(a[best*stride + p]) < most) {
-            ++best;
-        }
-        for (size_t j = 0; j < stride; ++j) {
-            const real moved = a[best*stride + j];
-            a[best*stride + j] = a[p*stride + j];
-            a[p*stride + j] = moved;
-        }
+    for (size_t j = 0; j < stride && best > p; ++j) {
+        const real moved = a[best*stride + j];
+        a[best*stride + j] = a[p*stride + j];
+        a[p*stride + j] = moved;
     }
 }
 
@@ -576,6 +621,7 @@ INLINE void choose_one(size_t n, size_t stride, size_t p, real *a)
    finite; a is overwritten.  Rows are scaled, then eliminated with a choice of pivots. */
 INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict x, real *singular)
 {
+    memset(x, 0, n*sizeof *x);  /* analysers do not see that all entries are set below */
     for (size_t i = 0; i < n; ++i) {
         real *const row = a + i*stride;
         real size = 0;
@@ -604,47 +650,50 @@ INLINE void solve_one(size_t n, size_t stride, real *restrict a, real *restrict 
     }
 }
 
-/* Swap two rows in those states in which the other's entry p is clearly the larger.  Products
-   with 0 and 1 are exact, and unlike branches they run in lanes. */
-APART void swap_lanes(size_t n, size_t p, real *restrict pivot, real *restrict other)
+/* Swap a row with the pivot's in those states in which it is the chosen one.  What is chosen are
+   whole entries: unlike products with 0 and 1, these keep what is not finite where it belongs. */
+APART void swap_lanes(size_t n, size_t p, real i, const real *restrict best, real *restrict pivot,
+        real *restrict other)
 {
-    real swap[LANES], keep[LANES];
-    for (size_t k = 0; k < LANES; ++k) {
-        swap[k] = magnitude(other[p*LANES + k]) > CLEARLY*magnitude(pivot[p*LANES + k]) ? R(1) : R(0);
-        keep[k] = 1 - swap[k];
-    }
     for (size_t j = p; j <= n; ++j) {
         for (size_t k = 0; k < LANES; ++k) {
             const real up = other[j*LANES + k], down = pivot[j*LANES + k];
-            pivot[j*LANES + k] = swap[k]*up + keep[k]*down;
-            other[j*LANES + k] = swap[k]*down + keep[k]*up;
+            pivot[j*LANES + k] = best[k] == i ? up : down;
+            other[j*LANES + k] = best[k] == i ? down : up;
         }
     }
 }
 
-/* Bring a row with a clearly larger entry p to place p, in those states that need it. */
+/* The choice of choose_one in every state. */
 INLINE void choose_lanes(size_t n, size_t p, real *a)
 {
     const size_t row = (n + 1)*LANES;
-    real most[LANES] = {0};
-    int any = 0;
+    real most[LANES], best[LANES], any = 0;
+    for (size_t k = 0; k < LANES; ++k) {
+        most[k] = CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        best[k] = 0;
+    }
     for (size_t i = p + 1; i < n; ++i) {
         for (size_t k = 0; k < LANES; ++k) {
-            most[k] = larger(most[k], magnitude(a[i*row + p*LANES + k]));
+            const real size = magnitude(a[i*row + p*LANES + k]);
+            best[k] = size > most[k] ? (real)i : best[k];
+            most[k] = larger(size, most[k]);
         }
     }
     for (size_t k = 0; k < LANES; ++k) {
-        any |= most[k] > CLEARLY*magnitude(a[p*row + p*LANES + k]);
+        any += best[k];
     }
-    for (size_t i = p + 1; i < n && any; ++i) {
-        swap_lanes(n, p, a + p*row, a + i*row);
+    for (size_t i = p + 1; i < n && any > 0; ++i) {
+        swap_lanes(n, p, (real)i, best, a + p*row, a + i*row);
     }
 }
 
-/* The same for LANES systems side by side, without padding. */
+/* The same for LANES systems side by side, without padding.  What comes NEARLY to the threshold
+   counts as singular here: the batch then settles it as for a single state. */
 INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
 {
     const size_t row = (n + 1)*LANES;
+    memset(x, 0, n*LANES*sizeof *x);
     for (size_t i = 0; i < n; ++i) {
         real size[LANES] = {0};
         for (size_t j = 0; j < n; ++j) {
@@ -665,7 +714,7 @@ INLINE void solve_lanes(size_t n, real *a, real *x, real *singular)
         const real *const pivot = a + p*row;
         choose_lanes(n, p, a);
         for (size_t k = 0; k < LANES; ++k) {
-            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > PIVOT);
+            singular[k] += UNLESS(magnitude(pivot[p*LANES + k]) > NEARLY*PIVOT);
             x[p*LANES + k] = 1/pivot[p*LANES + k];
         }
         for (size_t i = p + 1; i < n; ++i) {
@@ -742,9 +791,11 @@ INLINE real reflect(size_t rows, size_t stride, size_t p, real *a)
    diagonal entry of the triangle of a^T as a fraction of the largest. */
 static real least_norm(size_t rows, size_t columns, const real *a, const real *b, real *x)
 {
-    real t[BIG*BIG], diagonal[BIG], u[BIG], least = 0, most = 0;
-    for (size_t i = 0; i < rows*columns; ++i) {
-        t[i%columns*rows + i/columns] = a[i];
+    real t[BIG*BIG] = {0}, diagonal[BIG] = {0}, u[BIG] = {0}, least = 0, most = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        for (size_t j = 0; j < columns; ++j) {
+            t[j*rows + i] = a[i*columns + j];
+        }
     }
     for (size_t p = 0; p < rows; ++p) {
         diagonal[p] = reflect(columns, rows, p, t);
@@ -779,8 +830,8 @@ static real least_norm(size_t rows, size_t columns, const real *a, const real *b
    which is overwritten.  Columns that add less than RANK of the first are left out. */
 static void least_squares(size_t rows, size_t n, real *a, real *x)
 {
-    real r[BIG*BIG], b[BIG], diagonal[BIG];
-    size_t order[BIG], rank = 0;
+    real r[BIG*BIG] = {0}, b[BIG] = {0}, diagonal[BIG] = {0};
+    size_t order[BIG] = {0}, rank = 0;
     for (size_t j = 0; j < n; ++j) {
         order[j] = j;
     }
@@ -820,6 +871,29 @@ static void least_squares(size_t rows, size_t n, real *a, real *x)
     }
 }
 
+/* A quaternion with largest entry 1, so that squares of tiny ones keep their digits; NaN if it is
+   zero or its squared length overflows. */
+INLINE void scaled(const real *p, real *to)
+{
+    const real size = larger(larger(magnitude(p[0]), magnitude(p[1])),
+        larger(magnitude(p[2]), magnitude(p[3])));
+    const int ok = is_finite(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]) && size > 0;
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = ok ? p[i]/size : R(NAN);
+    }
+}
+
+/* A quaternion of length 1. */
+INLINE void unit(const real *p, real *to)
+{
+    real q[4];
+    scaled(p, q);
+    const real n = root(q[0]*q[0] + q[1]*q[1] + q[2]*q[2] + q[3]*q[3]);
+    for (size_t i = 0; i < 4; ++i) {
+        to[i] = q[i]/n;
+    }
+}
+
 /* Residuals [m, rad] at which iterations stop, and that count as solved. */
 #define CLOSED BY_TYPE(5e-5, 1e-13, 1e-16)
 #define MET BY_TYPE(5e-6, 1e-14, 1e-17)
@@ -852,8 +926,8 @@ static void moved(const real *X, const real *step, real part, real *to)
     const real half = part*root(v[0]*v[0] + v[1]*v[1] + v[2]*v[2])/2;
     const real c = cosine(half), f = magnitude(half) > 0 ? part*sine(half)/half/2 : part/2;
     const real a[3] = {f*v[0], f*v[1], f*v[2]};
-    const real size = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const real b[4] = {p[0]/size, p[1]/size, p[2]/size, p[3]/size};
+    real b[4];
+    unit(p, b);
     for (size_t i = 0; i < 3; ++i) {
         to[i] = X[i] + part*step[i];
     }
@@ -1032,7 +1106,7 @@ INLINE void dynamics_before(const prepared *m, size_t w, const real *X, const re
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1080,8 +1154,6 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -1101,7 +1173,6 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -1158,12 +1229,12 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -1562,10 +1633,11 @@ INLINE void dynamics_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
         o->entry[12][k] = gamma_c1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -1860,7 +1932,7 @@ INLINE void M_before(const prepared *m, size_t w, const real *X, M_values *s, ve
         s->J_star_t_14[k] = J_star_t_14;
         s->J_star_t_15[k] = J_star_t_15;
         s->J_star_t_17[k] = J_star_t_17;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -1893,8 +1965,6 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -1914,7 +1984,6 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -1970,12 +2039,12 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -2210,10 +2279,11 @@ INLINE void M_legs_upu(const prepared *m, size_t leg, size_t legs, const M_value
         o->sum[18][k] = add ? o->sum[18][k] + M_aa_t_4 : M_aa_t_4;  /* total_upu_yy_3 */
         o->sum[19][k] = add ? o->sum[19][k] + M_aa_t_5 : M_aa_t_5;  /* total_upu_yz_3 */
         o->sum[20][k] = add ? o->sum[20][k] + M_aa_t_6 : M_aa_t_6;  /* total_upu_zz_3 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2489,7 +2559,7 @@ INLINE void Z_before(const prepared *m, size_t w, const real *X, const real *V, 
         s->Z_q_in_base_x[k] = Z_q_in_base_x;
         s->Z_q_in_base_y[k] = Z_q_in_base_y;
         s->Z_q_in_base_z[k] = Z_q_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2534,8 +2604,6 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -2555,7 +2623,6 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -2612,12 +2679,12 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -2776,10 +2843,11 @@ INLINE void Z_legs_upu(const prepared *m, size_t leg, size_t legs, const Z_value
         o->sum[3][k] = add ? o->sum[3][k] + Z_a_t : Z_a_t;  /* total_upu_x_2 */
         o->sum[4][k] = add ? o->sum[4][k] + Z_a_t_2 : Z_a_t_2;  /* total_upu_y_2 */
         o->sum[5][k] = add ? o->sum[5][k] + Z_a_t_3 : Z_a_t_3;  /* total_upu_z_2 */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -2923,7 +2991,7 @@ INLINE void H_before(size_t w, const real *X, H_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -2947,8 +3015,6 @@ INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_value
         const real R_zz = s->R_zz[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -3026,9 +3092,9 @@ INLINE void H_legs_upu(const prepared *m, size_t leg, size_t legs, const H_value
         o->entry[3][k] = H_a_3_t;
         o->entry[4][k] = H_a_3_t_2;
         o->entry[5][k] = H_a_3_t_3;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
     }
 }
 
@@ -3134,7 +3200,7 @@ INLINE void Hk_before(size_t w, const real *X, Hk_values *s, verdict *t)
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3158,8 +3224,6 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         const real R_zz = s->R_zz[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -3178,7 +3242,6 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -3234,10 +3297,10 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t_2;
+        const real n_c_z = root_2*(-c_2*end_p1_r3_x - end_p1_r3_y*s_2)/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -3271,10 +3334,10 @@ INLINE void Hk_legs_upu(const prepared *m, size_t leg, size_t legs, const Hk_val
         o->entry[3][k] = Hk_a_1_x;
         o->entry[4][k] = Hk_a_1_y;
         o->entry[5][k] = Hk_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8));
     }
 }
 
@@ -3401,7 +3464,7 @@ INLINE void constraint_bias_before(size_t w, const real *X, const real *V, const
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3431,8 +3494,6 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real omega_z = s->omega_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -3451,7 +3512,6 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -3508,12 +3568,12 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -3586,10 +3646,11 @@ INLINE void constraint_bias_legs_upu(const prepared *m, size_t leg, size_t legs,
         /* (M11) part of the constraint's second derivative that does not hold the acceleration */
         const real gamma_c1 = nu_1 - n_c_z*rel_o_z;
         o->entry[0][k] = gamma_c1;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -3801,7 +3862,7 @@ INLINE void required_before(const prepared *m, size_t w, const real *X, const re
         s->mu_p_in_base_x[k] = mu_p_in_base_x;
         s->mu_p_in_base_y[k] = mu_p_in_base_y;
         s->mu_p_in_base_z[k] = mu_p_in_base_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -3852,8 +3913,6 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -3873,7 +3932,6 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -3930,12 +3988,12 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -4129,10 +4187,11 @@ INLINE void required_legs_upu(const prepared *m, size_t leg, size_t legs, const 
         o->entry[9][k] = Hk_a_1_x;
         o->entry[10][k] = Hk_a_1_y;
         o->entry[11][k] = Hk_a_1_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -4278,7 +4337,7 @@ INLINE void inverse_kinematics_before(size_t w, const real *X, inverse_kinematic
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4302,7 +4361,6 @@ INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t leg, size_t le
         const real R_zz = s->R_zz[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -4350,8 +4408,8 @@ INLINE void inverse_kinematics_legs_upu(const prepared *m, size_t leg, size_t le
         o->entry[0][k] = q_1;
         o->entry[1][k] = q_2;
         o->entry[2][k] = root_2;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -4476,7 +4534,7 @@ INLINE void joint_rates_before(size_t w, const real *X, const real *V, joint_rat
         s->omega_x[k] = omega_x;
         s->omega_y[k] = omega_y;
         s->omega_z[k] = omega_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4506,8 +4564,6 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real omega_z = s->omega_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -4526,7 +4582,6 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -4582,12 +4637,12 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -4625,10 +4680,11 @@ INLINE void joint_rates_legs_upu(const prepared *m, size_t leg, size_t legs, con
         o->entry[0][k] = qd_1_t_3;
         o->entry[1][k] = qd_1_t;
         o->entry[2][k] = S_dot_tip_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -4776,7 +4832,7 @@ INLINE void joint_accelerations_before(size_t w, const real *X, const real *V, c
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -4813,8 +4869,6 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real alpha_z = s->alpha_z[j];
         const real branch_1 = m->branch_1[i];
         const real branch_2 = m->branch_2[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -4833,7 +4887,6 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -4890,12 +4943,12 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -4985,10 +5038,11 @@ INLINE void joint_accelerations_legs_upu(const prepared *m, size_t leg, size_t l
         o->entry[0][k] = qdd_1_t_2;
         o->entry[1][k] = qdd_1_t;
         o->entry[2][k] = rel_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -5095,7 +5149,7 @@ INLINE void constraints_before(size_t w, const real *X, constraints_values *s, v
         s->R_zx[k] = R_zx;
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -5118,7 +5172,6 @@ INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, con
         const real R_zy = s->R_zy[j];
         const real R_zz = s->R_zz[j];
         const real branch_1 = m->branch_1[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_yx = m->upu_base_frame_yx[i];
@@ -5165,7 +5218,7 @@ INLINE void constraints_legs_upu(const prepared *m, size_t leg, size_t legs, con
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real end_p1_r1_x = end_p1_r0_y*inv_root_1*px_1 - end_p1_r0_x*inv_root_1*py_1;
         o->entry[0][k] = -end_p1_r1_x;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -5309,7 +5362,7 @@ INLINE void legs_before(size_t w, const real *X, const real *V, const real *A, l
         s->alpha_x[k] = alpha_x;
         s->alpha_y[k] = alpha_y;
         s->alpha_z[k] = alpha_z;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -5360,8 +5413,6 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_ = m->size_[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -5381,7 +5432,6 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real upu_platform_point_x = m->upu_platform_point_x[i];
         const real upu_platform_point_y = m->upu_platform_point_y[i];
         const real upu_platform_point_z = m->upu_platform_point_z[i];
-        const real volume_c_t = m->volume_c_t[i];
         /* (upu-K1) from the base point to the connection point */
         const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
             R_xz*upu_platform_point_z;
@@ -5438,12 +5488,12 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
         const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
         /* (upu-V6) triple product of the velocity vectors */
-        const real volume_c_t_2 = root_1*root_2;
+        const real volume_c_t = root_1*root_2;
         /* (upu-V5) direction 1 of the moment that the platform joint transmits */
         const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
         /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
            */
-        const real n_c_z = n_m1_r0_y*root_2/volume_c_t_2;
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
         /* (upu-V9) force part of reciprocal wrench 1 */
         const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
         const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
@@ -5627,10 +5677,11 @@ INLINE void legs_legs_upu(const prepared *m, size_t leg, size_t legs, const legs
         o->entry[12][k] = n_m1_in_base_x;
         o->entry[13][k] = n_m1_in_base_y;
         o->entry[14][k] = n_m1_in_base_z;
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(-volume_c_t_2) > TOLERANCE*volume_c_t) + UNLESS(magnitude(root_2) >
-            TOLERANCE*size_) + UNLESS(magnitude(w_1_t_3) > TOLERANCE*size_);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
     }
 }
 
@@ -5750,7 +5801,7 @@ INLINE void potential_before(const prepared *m, size_t w, const real *X, potenti
         s->R_zy[k] = R_zy;
         s->R_zz[k] = R_zz;
         s->potential_t[k] = potential_t;
-        t->invalid[k] += UNLESS(quaternion_norm2 > 0) + UNLESS(quaternion_scale > 0);
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
     }
 }
 
@@ -5786,7 +5837,6 @@ INLINE void potential_legs_upu(const prepared *m, size_t leg, size_t legs, const
         const real h_3_x = m->h_3_x[i];
         const real h_3_y = m->h_3_y[i];
         const real h_3_z = m->h_3_z[i];
-        const real size_t_3 = m->size_t_3[i];
         const real upu_base_frame_xx = m->upu_base_frame_xx[i];
         const real upu_base_frame_xy = m->upu_base_frame_xy[i];
         const real upu_base_frame_xz = m->upu_base_frame_xz[i];
@@ -5848,8 +5898,8 @@ INLINE void potential_legs_upu(const prepared *m, size_t leg, size_t legs, const
             h_3_x + b_r3_x*upu_link2_mass + upu_link3_mass*(b_r3_x + root_2)) - (-c_2*g_r0_z -
             g_r1_y*s_2)*(h_2_z + h_3_z - b_r3_y*upu_link2_mass - b_r3_y*upu_link3_mass);
         o->sum[0][k] = add ? o->sum[0][k] + potential_t_2 : potential_t_2;  /* total_upu */
-        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*size_t_3) +
-            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*size_t_3);
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001));
     }
 }
 
@@ -5900,6 +5950,314 @@ INLINE void potential_run(const prepared *m, size_t w, const real *X, real *pote
         }
     }
     potential_after(w, s, potential);
+}
+
+/* ---- condition: 379 mul, 249 add, 9 div, 13 sqrt, 0 trig, every leg counted ---- */
+typedef struct {
+    real t_x[LANES], t_y[LANES], t_z[LANES], R_xx[LANES], R_xy[LANES], R_xz[LANES], R_yx[LANES],
+        R_yy[LANES], R_yz[LANES], R_zx[LANES], R_zy[LANES], R_zz[LANES], sum[1][LANES];
+} condition_values;
+typedef struct {
+    real sum[1][8], entry[13][8], singular[8];
+} condition_results_upu;
+
+INLINE void condition_before(const prepared *m, size_t w, const real *X, condition_values *s, real
+    *lengths, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real X_0 = X[0*w + k];
+        const real X_1 = X[1*w + k];
+        const real X_2 = X[2*w + k];
+        const real X_3 = X[3*w + k];
+        const real X_4 = X[4*w + k];
+        const real X_5 = X[5*w + k];
+        const real X_6 = X[6*w + k];
+        const real legs_size = m->legs_size;
+        /* X: named entries */
+        const real t_x = X_0;
+        const real t_y = X_1;
+        const real t_z = X_2;
+        const real quaternion_norm2 = X_3*X_3 + X_4*X_4 + X_5*X_5 + X_6*X_6;
+        const real quaternion_scale = 2/quaternion_norm2;
+        const real quaternion_sx = X_3*quaternion_scale;
+        const real quaternion_sy = X_4*quaternion_scale;
+        const real quaternion_sz = X_5*quaternion_scale;
+        const real quaternion_wx = X_6*quaternion_sx;
+        const real quaternion_wy = X_6*quaternion_sy;
+        const real quaternion_wz = X_6*quaternion_sz;
+        const real quaternion_xx = X_3*quaternion_sx;
+        const real quaternion_xy = X_3*quaternion_sy;
+        const real quaternion_xz = X_3*quaternion_sz;
+        const real quaternion_yy = X_4*quaternion_sy;
+        const real quaternion_yz = X_4*quaternion_sz;
+        const real quaternion_zz = X_5*quaternion_sz;
+        const real R_xx = 1 - quaternion_yy - quaternion_zz;
+        const real R_xy = quaternion_xy - quaternion_wz;
+        const real R_xz = quaternion_wy + quaternion_xz;
+        const real R_yx = quaternion_wz + quaternion_xy;
+        const real R_yy = 1 - quaternion_xx - quaternion_zz;
+        const real R_yz = quaternion_yz - quaternion_wx;
+        const real R_zx = quaternion_xz - quaternion_wy;
+        const real R_zy = quaternion_wx + quaternion_yz;
+        const real R_zz = 1 - quaternion_xx - quaternion_yy;
+        s->t_x[k] = t_x;
+        s->t_y[k] = t_y;
+        s->t_z[k] = t_z;
+        s->R_xx[k] = R_xx;
+        s->R_xy[k] = R_xy;
+        s->R_xz[k] = R_xz;
+        s->R_yx[k] = R_yx;
+        s->R_yy[k] = R_yy;
+        s->R_yz[k] = R_yz;
+        s->R_zx[k] = R_zx;
+        s->R_zy[k] = R_zy;
+        s->R_zz[k] = R_zz;
+        lengths[1*w + k] = legs_size;
+        t->invalid[k] += UNLESS(is_finite(quaternion_scale)) + UNLESS(quaternion_scale > 0);
+    }
+}
+
+INLINE void condition_legs_upu(const prepared *m, size_t leg, size_t legs, const condition_values
+    *s, size_t states, size_t count, int add, condition_results_upu *o)
+{
+    for (size_t k = 0; k < count; ++k) {
+        const size_t i = leg + legs*k;
+        const size_t j = states*k;
+        const real t_x = s->t_x[j];
+        const real t_y = s->t_y[j];
+        const real t_z = s->t_z[j];
+        const real R_xx = s->R_xx[j];
+        const real R_xy = s->R_xy[j];
+        const real R_xz = s->R_xz[j];
+        const real R_yx = s->R_yx[j];
+        const real R_yy = s->R_yy[j];
+        const real R_yz = s->R_yz[j];
+        const real R_zx = s->R_zx[j];
+        const real R_zy = s->R_zy[j];
+        const real R_zz = s->R_zz[j];
+        const real b_c_x = m->b_c_x;
+        const real b_c_y = m->b_c_y;
+        const real b_c_z = m->b_c_z;
+        const real branch_1 = m->branch_1[i];
+        const real branch_2 = m->branch_2[i];
+        const real upu_base_frame_xx = m->upu_base_frame_xx[i];
+        const real upu_base_frame_xy = m->upu_base_frame_xy[i];
+        const real upu_base_frame_xz = m->upu_base_frame_xz[i];
+        const real upu_base_frame_yx = m->upu_base_frame_yx[i];
+        const real upu_base_frame_yy = m->upu_base_frame_yy[i];
+        const real upu_base_frame_yz = m->upu_base_frame_yz[i];
+        const real upu_base_frame_zx = m->upu_base_frame_zx[i];
+        const real upu_base_frame_zy = m->upu_base_frame_zy[i];
+        const real upu_base_frame_zz = m->upu_base_frame_zz[i];
+        const real upu_base_point_x = m->upu_base_point_x[i];
+        const real upu_base_point_y = m->upu_base_point_y[i];
+        const real upu_base_point_z = m->upu_base_point_z[i];
+        const real upu_platform_joint_axis_platform_x = m->upu_platform_joint_axis_platform_x[i];
+        const real upu_platform_joint_axis_platform_y = m->upu_platform_joint_axis_platform_y[i];
+        const real upu_platform_joint_axis_platform_z = m->upu_platform_joint_axis_platform_z[i];
+        const real upu_platform_point_x = m->upu_platform_point_x[i];
+        const real upu_platform_point_y = m->upu_platform_point_y[i];
+        const real upu_platform_point_z = m->upu_platform_point_z[i];
+        /* (upu-K1) from the base point to the connection point */
+        const real q_in_base_x = R_xx*upu_platform_point_x + R_xy*upu_platform_point_y +
+            R_xz*upu_platform_point_z;
+        const real q_in_base_y = R_yx*upu_platform_point_x + R_yy*upu_platform_point_y +
+            R_yz*upu_platform_point_z;
+        const real q_in_base_z = R_zx*upu_platform_point_x + R_zy*upu_platform_point_y +
+            R_zz*upu_platform_point_z;
+        const real S_x = q_in_base_x + t_x - upu_base_point_x;
+        const real S_y = q_in_base_y + t_y - upu_base_point_y;
+        const real S_z = q_in_base_z + t_z - upu_base_point_z;
+        /* (upu-K2) component along the reference direction */
+        const real px_1 = S_x*upu_base_frame_xx + S_y*upu_base_frame_yx + S_z*upu_base_frame_zx;
+        /* (upu-K3) component across the reference direction */
+        const real py_1 = S_x*upu_base_frame_xy + S_y*upu_base_frame_yy + S_z*upu_base_frame_zy;
+        /* (upu-K4) squared amplitude */
+        const real rho2_1 = px_1*px_1 + py_1*py_1;
+        /* (upu-K5) amplitude, with the sign of the branch */
+        const real root_1 = branch_1*root(rho2_1);
+        /* (upu-K9) the vector from joint 1 to the connection point, resolved along link 1 */
+        const real xi_1_t = S_x*upu_base_frame_xz + S_y*upu_base_frame_yz + S_z*upu_base_frame_zz;
+        /* (upu-K13) squared amplitude */
+        const real rho2_2 = rho2_1 + xi_1_t*xi_1_t;
+        /* (upu-K14) amplitude, with the sign of the branch */
+        const real root_2 = branch_2*root(rho2_2);
+        /* (upu-K15) cosine of the angle of joint 2 from its reference direction */
+        const real inv_root_2 = 1/root_2;
+        const real c_2 = inv_root_2*root_1;
+        /* (upu-K16) sine of the angle of joint 2 from its reference direction */
+        const real s_2 = inv_root_2*xi_1_t;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r0_x = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xx +
+            R_yx*upu_base_frame_yx + R_zx*upu_base_frame_zx) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xx + R_yy*upu_base_frame_yx +
+            R_zy*upu_base_frame_zx) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xx +
+            R_yz*upu_base_frame_yx + R_zz*upu_base_frame_zx);
+        const real end_p1_r0_y = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xy +
+            R_yx*upu_base_frame_yy + R_zx*upu_base_frame_zy) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xy + R_yy*upu_base_frame_yy +
+            R_zy*upu_base_frame_zy) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xy +
+            R_yz*upu_base_frame_yy + R_zz*upu_base_frame_zy);
+        const real end_p1_r0_z = upu_platform_joint_axis_platform_x*(R_xx*upu_base_frame_xz +
+            R_yx*upu_base_frame_yz + R_zx*upu_base_frame_zz) +
+            upu_platform_joint_axis_platform_y*(R_xy*upu_base_frame_xz + R_yy*upu_base_frame_yz +
+            R_zy*upu_base_frame_zz) + upu_platform_joint_axis_platform_z*(R_xz*upu_base_frame_xz +
+            R_yz*upu_base_frame_yz + R_zz*upu_base_frame_zz);
+        /* (upu-K6) cosine of the angle of joint 1 from its reference direction */
+        const real inv_root_1 = 1/root_1;
+        const real c_1 = inv_root_1*py_1;
+        /* (upu-K7) sine of the angle of joint 1 from its reference direction */
+        const real s_1 = inv_root_1*px_1;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real end_p1_r1_y = -c_1*end_p1_r0_y - end_p1_r0_x*s_1;
+        const real end_p1_r3_x = end_p1_r0_z*s_2 - c_2*end_p1_r1_y;
+        const real end_p1_r3_y = -c_2*end_p1_r0_z - end_p1_r1_y*s_2;
+        /* (upu-V6) triple product of the velocity vectors */
+        const real volume_c_t = root_1*root_2;
+        /* (upu-V5) direction 1 of the moment that the platform joint transmits */
+        const real n_m1_r0_y = -c_2*end_p1_r3_x - end_p1_r3_y*s_2;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_z = n_m1_r0_y*root_2/volume_c_t;
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real axis_z_upu_axes2_in_base_x = s_1*upu_base_frame_xy - c_1*upu_base_frame_xx;
+        const real axis_z_upu_axes2_in_base_y = s_1*upu_base_frame_yy - c_1*upu_base_frame_yx;
+        const real axis_z_upu_axes2_in_base_z = s_1*upu_base_frame_zy - c_1*upu_base_frame_zx;
+        const real w_1_t = s_1*s_2;
+        const real w_1_t_2 = c_1*s_2;
+        const real axis_y_upu_axes2_in_base_x = upu_base_frame_xx*w_1_t +
+            upu_base_frame_xy*w_1_t_2 - c_2*upu_base_frame_xz;
+        const real axis_y_upu_axes2_in_base_y = upu_base_frame_yx*w_1_t +
+            upu_base_frame_yy*w_1_t_2 - c_2*upu_base_frame_yz;
+        const real axis_y_upu_axes2_in_base_z = upu_base_frame_zx*w_1_t +
+            upu_base_frame_zy*w_1_t_2 - c_2*upu_base_frame_zz;
+        const real axis_x_upu_axes2_x = axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_z -
+            axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_y;
+        const real axis_x_upu_axes2_y = axis_y_upu_axes2_in_base_z*axis_z_upu_axes2_in_base_x -
+            axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_z;
+        const real axis_x_upu_axes2_z = axis_y_upu_axes2_in_base_x*axis_z_upu_axes2_in_base_y -
+            axis_y_upu_axes2_in_base_y*axis_z_upu_axes2_in_base_x;
+        const real w_1_t_3 = root_1 + n_c_z*n_m1_r0_y;
+        /* (M8) moment of the column's unit force about the platform origin */
+        const real H_a_3_t = axis_x_upu_axes2_z*q_in_base_y - axis_x_upu_axes2_y*q_in_base_z;
+        const real H_a_3_t_2 = axis_x_upu_axes2_x*q_in_base_z - axis_x_upu_axes2_z*q_in_base_x;
+        const real H_a_3_t_3 = axis_x_upu_axes2_y*q_in_base_x - axis_x_upu_axes2_x*q_in_base_y;
+        /* (upu-V7) force part, zero on the manifold, of the unit moment that the leg's freedoms leave out
+           */
+        const real n_c_t = axis_z_upu_axes2_in_base_x*n_c_z;
+        const real n_c_t_2 = axis_z_upu_axes2_in_base_y*n_c_z;
+        const real n_c_t_3 = axis_z_upu_axes2_in_base_z*n_c_z;
+        /* (M9) moment of the column's unit force about the platform origin */
+        const real Hk_a_1_x = axis_y_upu_axes2_in_base_x*end_p1_r3_x + n_c_t_2*q_in_base_z -
+            axis_x_upu_axes2_x*end_p1_r3_y - n_c_t_3*q_in_base_y;
+        const real Hk_a_1_y = axis_y_upu_axes2_in_base_y*end_p1_r3_x + n_c_t_3*q_in_base_x -
+            axis_x_upu_axes2_y*end_p1_r3_y - n_c_t*q_in_base_z;
+        const real Hk_a_1_z = axis_y_upu_axes2_in_base_z*end_p1_r3_x + n_c_t*q_in_base_y -
+            axis_x_upu_axes2_z*end_p1_r3_y - n_c_t_2*q_in_base_x;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_t_2 = b_c_x - upu_platform_point_x;
+        const real spread_t_3 = b_c_y - upu_platform_point_y;
+        const real spread_t_4 = b_c_z - upu_platform_point_z;
+        const real spread_t_5 = spread_t_2*spread_t_2 + spread_t_3*spread_t_3 +
+            spread_t_4*spread_t_4;
+        /* (upu-K4) squared amplitude */
+        const real pivot_size = magnitude(rho2_1);
+        /* (upu-K13) squared amplitude */
+        const real pivot_size_2 = magnitude(rho2_2);
+        /* (upu-V6) triple product of the velocity vectors */
+        const real pivot_size_3 = magnitude(volume_c_t);
+        /* (upu-V9) force part of reciprocal wrench 1 */
+        const real pivot_size_4 = magnitude(root_2);
+        const real pivot_size_5 = magnitude(w_1_t_3);
+        /* (upu-N38) force at the connection point that balances the leg's inertia and weight along all
+           freedoms */
+        const real least_pivots = lesser(lesser(lesser(lesser(R(1.25)*root(pivot_size),
+            R(1.25)*root(pivot_size_2)), R(1.5624999999999998)*pivot_size_3),
+            R(1.25)*pivot_size_4), R(1.25)*pivot_size_5);
+        o->sum[0][k] = add ? o->sum[0][k] + spread_t_5 : spread_t_5;  /* total_upu */
+        o->entry[0][k] = axis_x_upu_axes2_x;
+        o->entry[1][k] = axis_x_upu_axes2_y;
+        o->entry[2][k] = axis_x_upu_axes2_z;
+        o->entry[3][k] = H_a_3_t;
+        o->entry[4][k] = H_a_3_t_2;
+        o->entry[5][k] = H_a_3_t_3;
+        o->entry[6][k] = -n_c_t;
+        o->entry[7][k] = -n_c_t_2;
+        o->entry[8][k] = -n_c_t_3;
+        o->entry[9][k] = Hk_a_1_x;
+        o->entry[10][k] = Hk_a_1_y;
+        o->entry[11][k] = Hk_a_1_z;
+        o->entry[12][k] = least_pivots;
+        o->singular[k] = UNLESS(magnitude(rho2_1) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(rho2_2) > TOLERANCE*TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(-volume_c_t) > TOLERANCE*R(0.6400000000000001)) +
+            UNLESS(magnitude(root_2) > TOLERANCE*R(0.8)) + UNLESS(magnitude(w_1_t_3) >
+            TOLERANCE*R(0.8));
+    }
+}
+
+INLINE void condition_place_upu(size_t w, const condition_results_upu *o, size_t leg, size_t
+    first, real *H, real *Hk, real *pivots, verdict *t)
+{
+    for (size_t k = 0; k < w; ++k) {
+        H[(leg)*w + k] = o->entry[0][first + k];
+        H[(3 + leg)*w + k] = o->entry[1][first + k];
+        H[(6 + leg)*w + k] = o->entry[2][first + k];
+        H[(9 + leg)*w + k] = o->entry[3][first + k];
+        H[(12 + leg)*w + k] = o->entry[4][first + k];
+        H[(15 + leg)*w + k] = o->entry[5][first + k];
+        Hk[(leg)*w + k] = o->entry[6][first + k];
+        Hk[(3 + leg)*w + k] = o->entry[7][first + k];
+        Hk[(6 + leg)*w + k] = o->entry[8][first + k];
+        Hk[(9 + leg)*w + k] = o->entry[9][first + k];
+        Hk[(12 + leg)*w + k] = o->entry[10][first + k];
+        Hk[(15 + leg)*w + k] = o->entry[11][first + k];
+        pivots[(leg)*w + k] = o->entry[12][first + k];
+        t->singular[k] += o->singular[first + k];
+    }
+}
+
+INLINE void condition_after(const prepared *m, size_t w, const condition_values *s, real *lengths)
+{
+    for (size_t k = 0; k < w; ++k) {
+        const real total_upu = s->sum[0][k];
+        const real spread_t = m->spread_t;
+        /* (C2) rms distance of the platform points from their centroid */
+        const real spread_ = spread_t*root(total_upu);
+        lengths[0*w + k] = spread_;
+    }
+}
+
+INLINE void condition_run(const prepared *m, size_t w, const real *X, real *H, real *Hk, real
+    *lengths, real *pivots, real *reach, verdict *t)
+{
+    condition_values values, *const s = &values;
+    condition_results_upu results_upu;
+    clear(reach, 3*w);
+    condition_before(m, w, X, s, lengths, t);
+    if (w == 1) {  /* the legs side by side */
+        condition_legs_upu(m, 0, 1, s, 0, 3, 0, &results_upu);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_place_upu(w, &results_upu, leg, leg, H, Hk, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < 1; ++k) {
+                s->sum[n][k] = total(results_upu.sum[n], 3);
+            }
+        }
+    } else {  /* the states side by side */
+        memset(results_upu.sum, 0, sizeof results_upu.sum);
+        for (size_t leg = 0; leg < 3; ++leg) {
+            condition_legs_upu(m, leg, 0, s, 1, w, 1, &results_upu);
+            condition_place_upu(w, &results_upu, leg, 0, H, Hk, pivots, t);
+        }
+        for (size_t n = 0; n < 1; ++n) {
+            for (size_t k = 0; k < w; ++k) {
+                s->sum[n][k] = results_upu.sum[n][k];
+            }
+        }
+    }
+    condition_after(m, w, s, lengths);
 }
 
 /* ---- forces and accelerations ---- */
@@ -5994,12 +6352,13 @@ INLINE void forward_dynamics_any(const prepared *m, size_t w, const real *X, con
 /* ---- what is made of other functions ---- */
 
 int tripod_3upu_complete_acceleration(const prepared *m, const real *X, const real *V, const real *A,
-        real *completed)
+        const real *wrench, real *completed)
 {
     const int code = all_finite(A, 6) ? TRIPOD_3UPU_OK : TRIPOD_3UPU_INVALID;
     (void)m;
     (void)X;
     (void)V;
+    (void)wrench;
     deliver(A, 6, 1, &code, completed);
     return code;
 }
@@ -6057,18 +6416,20 @@ int tripod_3upu_energy(const prepared *m, const real *X, const real *V, real *ki
     return code;
 }
 
-/* Largest residual of the driven joints and constraints at X; turns modulo 2 pi. */
+/* Largest residual of the driven joints and constraints at X, turns modulo 2 pi; nothing
+   where X is impossible. */
 static int mismatch(const prepared *m, const real *q_actuated, const real *X, real *gap, real *size)
 {
     static const size_t driven[] = {2, 5, 8};
     real q[9];
     int code = tripod_3upu_inverse_kinematics(m, X, q);
+    if (code != TRIPOD_3UPU_OK) {
+        return code;
+    }
     for (size_t i = 0; i < 3; ++i) {
         gap[i] = q_actuated[i] - q[driven[i]];
     }
-    if (code == TRIPOD_3UPU_OK) {
-        code = tripod_3upu_constraints(m, X, gap + 3);
-    }
+    code = tripod_3upu_constraints(m, X, gap + 3);
     for (size_t i = 3; i < 6; ++i) {
         gap[i] = -gap[i];
     }
@@ -6081,13 +6442,13 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 {
     real a[BIG*(BIG + 1)], H[18];
     int code = tripod_3upu_H(m, X, H);
-    fill_rows(3, H, gap, a);
     real Hk[18];
     if (code == TRIPOD_3UPU_OK) {
         code = tripod_3upu_Hk(m, X, Hk);
     }
-    fill_rows(3, Hk, gap + 3, a + 21);
     if (code == TRIPOD_3UPU_OK) {
+        fill_rows(3, H, gap, a);
+        fill_rows(3, Hk, gap + 3, a + 21);
         least_squares(6, 6, a, step);
     }
     return code;
@@ -6096,7 +6457,7 @@ static int close_gap(const prepared *m, const real *X, const real *gap, real *st
 int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, const real *X0, real *X)
 {
     enum { GAPS = 6 };
-    real found[7], gap[GAPS], trial[7], next[GAPS], step[6];
+    real found[7], gap[GAPS] = {0}, trial[7] = {0}, next[GAPS] = {0}, step[6] = {0};
     real size = 0, next_size = 0;
     int code = all_finite(q_actuated, 3) ? mismatch(m, q_actuated, X0, gap, &size)
         : TRIPOD_3UPU_INVALID;
@@ -6127,19 +6488,20 @@ int tripod_3upu_forward_kinematics(const prepared *m, const real *q_actuated, co
 
 int tripod_3upu_project(const prepared *m, const real *X, real *projected)
 {
-    real found[7], trial[7], gap[3], step[6];
+    real found[7], trial[7], gap[3], step[6] = {0};
     real a[BIG*(BIG + 1)], Hk[18];
     memcpy(found, X, sizeof found);
     int code = tripod_3upu_constraints(m, found, gap);
     for (int n = 0; n < 50 && code == TRIPOD_3UPU_OK && largest(gap, 3) > MET; ++n) {
         code = tripod_3upu_Hk(m, found, Hk);
-        if (code == TRIPOD_3UPU_OK) {
-            fill_rows(3, Hk, gap, a);
-            least_squares(3, 6, a, step);
-            moved(found, step, -1, trial);
-            memcpy(found, trial, sizeof found);
-            code = tripod_3upu_constraints(m, found, gap);
+        if (code != TRIPOD_3UPU_OK) {
+            break;
         }
+        fill_rows(3, Hk, gap, a);
+        least_squares(3, 6, a, step);
+        moved(found, step, -1, trial);
+        memcpy(found, trial, sizeof found);
+        code = tripod_3upu_constraints(m, found, gap);
         if (!(largest(step, 6) > MET/10)) {
             break;
         }
@@ -6151,16 +6513,144 @@ int tripod_3upu_project(const prepared *m, const real *X, real *projected)
     return code;
 }
 
+/* ---- conditioning ---- */
+
+/* Turn columns p and q of a[rows][columns] until they are perpendicular; returns whether they were
+   not, to rounding. */
+static int turn_columns(size_t rows, size_t columns, size_t p, size_t q, real *a)
+{
+    real pp = 0, qq = 0, pq = 0;
+    for (size_t i = 0; i < rows; ++i) {
+        pp += a[i*columns + p]*a[i*columns + p];
+        qq += a[i*columns + q]*a[i*columns + q];
+        pq += a[i*columns + p]*a[i*columns + q];
+    }
+    if (!(magnitude(pq) > ROUNDING*root(pp)*root(qq))) {
+        return 0;
+    }
+    const real cotangent = (qq - pp)/(2*pq), size = magnitude(cotangent);
+    const real t = (cotangent < 0 ? -1 : 1)/(size + root(1 + size*size));
+    const real c = 1/root(1 + t*t), s = c*t;
+    for (size_t i = 0; i < rows; ++i) {
+        const real x = a[i*columns + p], y = a[i*columns + q];
+        a[i*columns + p] = c*x - s*y;
+        a[i*columns + q] = s*x + c*y;
+    }
+    return 1;
+}
+
+/* Singular values of a[rows][columns], rows >= columns, in descending order, by one-sided Jacobi
+   rotations; a is overwritten. */
+static void singular_values(size_t rows, size_t columns, real *a, real *sigma)
+{
+    const real size = largest(a, rows*columns);
+    for (size_t i = 0; i < rows*columns && size > 0; ++i) {
+        a[i] /= size;
+    }
+    for (int sweep = 0, turned = 1; sweep < 40 && turned; ++sweep) {
+        turned = 0;
+        for (size_t p = 0; p < columns; ++p) {
+            for (size_t q = p + 1; q < columns; ++q) {
+                turned |= turn_columns(rows, columns, p, q, a);
+            }
+        }
+    }
+    for (size_t j = 0; j < columns; ++j) {
+        real sum = 0;
+        for (size_t i = 0; i < rows; ++i) {
+            sum += a[i*columns + j]*a[i*columns + j];
+        }
+        const real value = size*root(sum);
+        size_t place = j;
+        for (; place > 0 && sigma[place - 1] < value; --place) {
+            sigma[place] = sigma[place - 1];
+        }
+        sigma[place] = value;
+    }
+}
+
+/* H and Hk with moment rows divided by the length, and the margins of the legs. */
+static int matrices(const prepared *m, const real *X, real *H, real *Hk, real *pivots)
+{
+    static const size_t moments[] = {3, 4, 5};
+    real lengths[2], reach[3];
+    verdict values, *const t = &values;
+    int code;
+    start(1, t);
+    check(7, 1, X, t->invalid);
+    condition_run(m, 1, X, H, Hk, lengths, pivots, reach, t);
+    const real length = lengths[0] > R(1e-9)*lengths[1] ? lengths[0] : lengths[1];
+    for (size_t i = 0; i < 3; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            H[moments[i]*3 + j] /= length;
+        }
+        for (size_t j = 0; j < 3; ++j) {
+            Hk[moments[i]*3 + j] /= length;
+        }
+    }
+    check(18, 1, H, t->overflow);
+    check(18, 1, Hk, t->overflow);
+    check(3, 1, pivots, t->overflow);
+    judge(t, 1, &code);
+    return code;
+}
+
+int tripod_3upu_condition(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[18], a[18], found[3], pivots[3];
+    real Hk[18];
+    const int code = matrices(m, X, H, Hk, pivots);
+    if (code != TRIPOD_3UPU_OK) {
+        refuse(3, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*3 + j] = H[i*3 + j];
+        }
+    }
+    singular_values(6, 3, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
+int tripod_3upu_condition_constrained(const prepared *m, const real *X, real *sigma, real *legs)
+{
+    real H[18], a[36], found[6], pivots[3];
+    real Hk[18];
+    const int code = matrices(m, X, H, Hk, pivots);
+    if (code != TRIPOD_3UPU_OK) {
+        refuse(6, sigma);
+        refuse(3, legs);
+        return code;
+    }
+    for (size_t i = 0; i < 6; ++i) {
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*6 + j] = H[i*3 + j];
+        }
+        for (size_t j = 0; j < 3; ++j) {
+            a[i*6 + 3 + j] = Hk[i*3 + j];
+        }
+    }
+    singular_values(6, 6, a, found);
+    memcpy(sigma, found, sizeof found);
+    memcpy(legs, pivots, sizeof pivots);
+    return code;
+}
+
 int tripod_3upu_rotation(const real *X, real *R)
 {
-    const real *const p = X + 3;
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
-    const int code = all_finite(X, 7) && n > 0 && is_finite(n) ? TRIPOD_3UPU_OK : TRIPOD_3UPU_INVALID;
-    const real x = p[0]/n, y = p[1]/n, z = p[2]/n, w = p[3]/n;
+    real p[4];
+    scaled(X + 3, p);
+    const int code = all_finite(X, 7) && all_finite(p, 4) ? TRIPOD_3UPU_OK : TRIPOD_3UPU_INVALID;
+    const real x = p[0], y = p[1], z = p[2], w = p[3];
+    const real xx = x*x, yy = y*y, zz = z*z, ww = w*w, n = xx + yy + zz + ww;
     const real rows[9] = {
-        1 - 2*(y*y + z*z), 2*(x*y - w*z), 2*(x*z + w*y),
-        2*(x*y + w*z), 1 - 2*(x*x + z*z), 2*(y*z - w*x),
-        2*(x*z - w*y), 2*(y*z + w*x), 1 - 2*(x*x + y*y)
+        (xx + ww - (yy + zz))/n, 2*(x*y - w*z)/n, 2*(x*z + w*y)/n,
+        2*(x*y + w*z)/n, (yy + ww - (xx + zz))/n, 2*(y*z - w*x)/n,
+        2*(x*z - w*y)/n, 2*(y*z + w*x)/n, (zz + ww - (xx + yy))/n
     };
     deliver(rows, 9, 1, &code, R);
     return code;
@@ -6169,11 +6659,8 @@ int tripod_3upu_rotation(const real *X, real *R)
 /* X of a position and a quaternion of any length; extra coordinates zero. */
 static int with_position(const real *t, const real *p, real *X)
 {
-    const real n = root(p[0]*p[0] + p[1]*p[1] + p[2]*p[2] + p[3]*p[3]);
     real found[7] = {0};
-    for (size_t i = 0; i < 4; ++i) {
-        found[3 + i] = p[i]/n;
-    }
+    unit(p, found + 3);
     memcpy(found, t, 3*sizeof *t);
     const int code = all_finite(found, 7) ? TRIPOD_3UPU_OK : TRIPOD_3UPU_INVALID;
     deliver(found, 7, 1, &code, X);
@@ -6196,6 +6683,10 @@ int tripod_3upu_pose(const real *t, const real *R, real *X)
         const real *const c = candidates[i], n = c[0]*c[0] + c[1]*c[1] + c[2]*c[2] + c[3]*c[3];
         best = n > most ? i : best;
         most = n > most ? n : most;
+    }
+    if (!all_rotations(R, 1)) {
+        refuse(7, X);
+        return TRIPOD_3UPU_INVALID;
     }
     return with_position(t, candidates[best], X);
 }
@@ -6241,6 +6732,11 @@ size_t tripod_3upu_M_batch(const tripod_3upu_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         M_any(model, LANES, X + 7*i, M + 36*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_M(model, X + 7*(i + k), M + 36*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6265,6 +6761,11 @@ size_t tripod_3upu_Z_batch(const tripod_3upu_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Z_any(model, LANES, X + 7*i, V + 6*i, Z + 6*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_Z(model, X + 7*(i + k), V + 6*(i + k), Z + 6*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6288,6 +6789,11 @@ size_t tripod_3upu_H_batch(const tripod_3upu_model *model, size_t n, const tripo
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         H_any(model, LANES, X + 7*i, H + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_H(model, X + 7*(i + k), H + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6312,6 +6818,11 @@ size_t tripod_3upu_Hk_batch(const tripod_3upu_model *model, size_t n, const trip
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         Hk_any(model, LANES, X + 7*i, Hk + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_Hk(model, X + 7*(i + k), Hk + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6337,6 +6848,12 @@ size_t tripod_3upu_dynamics_batch(const tripod_3upu_model *model, size_t n, cons
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         dynamics_any(model, LANES, X + 7*i, V + 6*i, M + 36*i, Z + 6*i, H + 18*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_dynamics(model, X + 7*(i + k), V + 6*(i + k), M + 36*(i + k), Z + 6*(i +
+                    k), H + 18*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6361,6 +6878,11 @@ size_t tripod_3upu_constraints_batch(const tripod_3upu_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         constraints_any(model, LANES, X + 7*i, residual + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_constraints(model, X + 7*(i + k), residual + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6385,6 +6907,11 @@ size_t tripod_3upu_constraint_bias_batch(const tripod_3upu_model *model, size_t 
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         constraint_bias_any(model, LANES, X + 7*i, V + 6*i, bias + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_constraint_bias(model, X + 7*(i + k), V + 6*(i + k), bias + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6409,6 +6936,11 @@ size_t tripod_3upu_inverse_kinematics_batch(const tripod_3upu_model *model, size
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         inverse_kinematics_any(model, LANES, X + 7*i, q + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_inverse_kinematics(model, X + 7*(i + k), q + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6433,6 +6965,11 @@ size_t tripod_3upu_joint_rates_batch(const tripod_3upu_model *model, size_t n, c
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_rates_any(model, LANES, X + 7*i, V + 6*i, rates + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_joint_rates(model, X + 7*(i + k), V + 6*(i + k), rates + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6458,6 +6995,12 @@ size_t tripod_3upu_joint_accelerations_batch(const tripod_3upu_model *model, siz
     for (; i + LANES <= n; i += LANES) {
         int codes[LANES];
         joint_accelerations_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, accelerations + 9*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_joint_accelerations(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k),
+                    accelerations + 9*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6486,6 +7029,12 @@ size_t tripod_3upu_inverse_dynamics_batch(const tripod_3upu_model *model, size_t
         int codes[LANES];
         inverse_dynamics_any(model, LANES, X + 7*i, V + 6*i, A + 6*i, wrench ? wrench + 6*i : NULL, tau +
             3*i, lambda + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_inverse_dynamics(model, X + 7*(i + k), V + 6*(i + k), A + 6*(i + k), wrench
+                    ? wrench + 6*(i + k) : NULL, tau + 3*(i + k), lambda + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6514,6 +7063,12 @@ size_t tripod_3upu_forward_dynamics_batch(const tripod_3upu_model *model, size_t
         int codes[LANES];
         forward_dynamics_any(model, LANES, X + 7*i, V + 6*i, tau + 3*i, wrench ? wrench + 6*i : NULL, A +
             6*i, lambda + 3*i, codes);
+        for (size_t k = 0; k < LANES; ++k) {
+            if (codes[k] != TRIPOD_3UPU_OK) {
+                codes[k] = tripod_3upu_forward_dynamics(model, X + 7*(i + k), V + 6*(i + k), tau + 3*(i + k),
+                    wrench ? wrench + 6*(i + k) : NULL, A + 6*(i + k), lambda + 3*(i + k));
+            }
+        }
         failed += record(codes, LANES, status ? status + i : NULL);
     }
     for (; i < n; ++i) {
@@ -6525,13 +7080,13 @@ size_t tripod_3upu_forward_dynamics_batch(const tripod_3upu_model *model, size_t
 }
 
 size_t tripod_3upu_complete_acceleration_batch(const tripod_3upu_model *model, size_t n, const
-    tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, tripod_3upu_real
-    *completed, int *status)
+    tripod_3upu_real *X, const tripod_3upu_real *V, const tripod_3upu_real *A, const
+    tripod_3upu_real *wrench, tripod_3upu_real *completed, int *status)
 {
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
-        const int code = tripod_3upu_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, completed +
-            6*i);
+        const int code = tripod_3upu_complete_acceleration(model, X + 7*i, V + 6*i, A + 6*i, wrench ?
+            wrench + 6*i : NULL, completed + 6*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
@@ -6568,6 +7123,28 @@ size_t tripod_3upu_forward_kinematics_batch(const tripod_3upu_model *model, size
     size_t failed = 0;
     for (size_t i = 0; i < n; ++i) {
         const int code = tripod_3upu_forward_kinematics(model, q_actuated + 3*i, X0 + 7*i, X + 7*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3upu_condition_batch(const tripod_3upu_model *model, size_t n, const
+    tripod_3upu_real *X, tripod_3upu_real *sigma, tripod_3upu_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3upu_condition(model, X + 7*i, sigma + 3*i, legs + 3*i);
+        failed += record(&code, 1, status ? status + i : NULL);
+    }
+    return failed;
+}
+
+size_t tripod_3upu_condition_constrained_batch(const tripod_3upu_model *model, size_t n, const
+    tripod_3upu_real *X, tripod_3upu_real *sigma, tripod_3upu_real *legs, int *status)
+{
+    size_t failed = 0;
+    for (size_t i = 0; i < n; ++i) {
+        const int code = tripod_3upu_condition_constrained(model, X + 7*i, sigma + 6*i, legs + 3*i);
         failed += record(&code, 1, status ? status + i : NULL);
     }
     return failed;
