@@ -208,7 +208,8 @@ class _Model:
 
 def _at(value: Array, state: int) -> Array:
     """A value at one state, () or (legs,); prepared ones are the same at all."""
-    return value[..., state if value.shape[-1] > 1 else 0]
+    value = np.atleast_1d(value)  # a number of the structure has no states
+    return np.asarray(value[..., state if value.shape[-1] > 1 else 0])
 
 
 def poses_around_home(manipulator: Manipulator) -> list[Array]:
