@@ -529,7 +529,7 @@ def driven_anywhere(drawn: Manipulator, rng: np.random.Generator) -> Manipulator
     for _ in range(30):
         chance = float(rng.choice([0.3, 0.5, 0.7, 0.9]))
         marks = [
-            [bool(rng.random() < (0.15 if joint.extra else chance)) for joint in leg.joints]
+            [bool(rng.random() < (0.3 if joint.extra else chance)) for joint in leg.joints]
             for leg in drawn.legs
         ]
         if not any(map(any, marks)):
