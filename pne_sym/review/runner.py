@@ -99,6 +99,7 @@ def _call(
         return {"error": f"no value is known for its argument {unknown[0]}"}
     more = {_PARAMETERS: p} if _PARAMETERS in inspect.signature(function).parameters else {}
     arguments = {n: values[n] for n in names}
+    arguments |= {n: values[w] for n in names for o in names if (w := f"{n} with {o}") in values}
     count = len(values["X"])
     try:
         batch = _tuple(function(**arguments, **more))

@@ -44,7 +44,7 @@ def _near(path: str, value: Array, planar: bool, rng: np.random.Generator) -> Ar
     return np.asarray(moved, dtype=np.float64)
 
 
-SHARED = ("weights", "length")
+SHARED = ("weights", "length", "nearest")
 """Arguments that are the same for all states."""
 
 
@@ -52,6 +52,8 @@ def random_values(
     manifest: Mapping[str, Any], count: int, size: float, rng: np.random.Generator
 ) -> dict[str, Array]:
     """Values for the arguments of functions by name, near home, before constraints are met.
+
+    "R with nearest" is R where `nearest` is given too.
 
     Args:
         manifest: of the model.
@@ -86,10 +88,14 @@ def _orientations(pose: list[str], count: int, rng: np.random.Generator) -> dict
     turns = rng.normal(0.0, 1.0, (count, 3))
     matrices = [_turn(v if "qw" in pose else v * (0, 0, 1)) for v in turns]
     side = 3 if "qw" in pose else 2
+    R = np.array([matrix[:side, :side] for matrix in matrices])
     return {
         "t": rng.normal(size=(count, places)),
         "rpy": turns,
-        "R": np.array([matrix[:side, :side] for matrix in matrices]),
+        "R": R,
+        "nearest": np.array(1.0),
+        "R with nearest": R
+        + 0.5 * rng.normal(size=R.shape),  # no rotations: some need a reflection
     }
 
 

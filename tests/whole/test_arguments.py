@@ -195,3 +195,17 @@ def test_leading_dimensions_that_do_not_broadcast(name: str, function: str) -> N
                 called(**{**values, **many})
             assert "(3,)" in str(told.value)
             assert "(4,)" in str(told.value)
+
+
+def test_the_length_of_condition_is_a_positive_number() -> None:
+    model = module(catalogue("stewart"))
+    for wrong, kind in (("2", "text"), (True, "truth values"), (1j, "complex numbers")):
+        with pytest.raises(
+            TypeError, match=f"condition: length: expected real numbers, got {kind}"
+        ):
+            model.condition(model.HOME_X, length=wrong)
+    for wrong in (0.0, -1.0, np.nan, np.inf, [1.0]):
+        with pytest.raises(
+            ValueError, match=r"condition: length is .*, expected a positive number"
+        ):
+            model.condition(model.HOME_X, length=wrong)
