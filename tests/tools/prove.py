@@ -41,7 +41,7 @@ NUMBERS = ("-warn-special-float", "non-finite")
 # pivot equally long, and the analysis joins the two orders of rows into one that has no pivot.
 # What iterates is left out: intervals cannot follow its steps.
 BOX_POSE, BOX_OTHER = 1e-3, 1.0
-ITERATED = ("forward_kinematics", "project")
+ITERATED = ("forward_kinematics", "project", "condition")
 
 # (analysis, text of the alarm) -> why it is none.
 EXPLAINED = {
