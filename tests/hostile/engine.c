@@ -56,7 +56,7 @@ static uint64_t draw(worker *w)
 
 static size_t below(worker *w, size_t n)
 {
-    return (size_t)((draw(w) >> 33)%n);
+    return n ? (size_t)((draw(w) >> 33)%n) : 0;
 }
 
 /* Between -1 and 1. */
@@ -91,7 +91,7 @@ static int fill(worker *w, const array *a, int tame, real *x)
     for (size_t e = 0; e < a->size; ++e) {
         x[e] = (near ? a->home[e] : a->positive ? (real)3.5 : 0) + reach*part(w);
     }
-    if (kind == 6) {
+    if (kind == 6 && a->size) {
         x[below(w, a->size)] = special(w);
     } else if (kind == 7 && near && a->quaternion < a->size) {
         const real sizes[] = {0, (real)1e-161, (real)1e-20, (real)1e20, (real)1e155, (real)1e200};

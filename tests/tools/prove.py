@@ -41,7 +41,7 @@ NUMBERS = ("-warn-special-float", "non-finite")
 # pivot equally long, and the analysis joins the two orders of rows into one that has no pivot.
 # What iterates is left out: intervals cannot follow its steps.
 BOX_POSE, BOX_OTHER = 1e-3, 1.0
-ITERATED = ("forward_kinematics", "project")
+ITERATED = ("forward_kinematics", "project", "condition")
 
 # (analysis, text of the alarm) -> why it is none.
 EXPLAINED = {
@@ -86,7 +86,8 @@ def driver(model: Interface, analysis: str) -> str:
             given = [f"{'NULL' if a.optional and chosen else f'in_{a.name}'}" for a in f.inputs]
             given += [f"out_{a.name}" for a in f.outputs]
             lines.append(f"    {name}_{f.name}({', '.join([*arguments, *given])});")
-            many = ", ".join([*arguments, str(BATCH), *given, "status"])
+            states = 2 if f.name in ITERATED else BATCH  # no lanes there, but long analyses
+            many = ", ".join([*arguments, str(states), *given, "status"])
             lines.append(f"    {name}_{f.name}_batch({many});")
         lines += ["}", ""]
     lines += ["int main(void)", "{"]
