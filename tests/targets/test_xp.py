@@ -98,7 +98,7 @@ def test_jax_transforms() -> None:
     state = [jnp.asarray(given[n]) for n in ("X", "V", "A")]
     wanted = m.inverse_dynamics(*(given[n] for n in ("X", "V", "A")))
     p = x.parameters(jnp)
-    run = jax.jit(jax.vmap(lambda X, V, A, p: x.inverse_dynamics(X, V, A, p), (0, 0, 0, None)))
+    run = jax.jit(jax.vmap(x.inverse_dynamics, (0, 0, 0, None)))
     np.testing.assert_allclose(run(*state, p), wanted, rtol=1e-11)
     masses = jnp.linspace(8.0, 16.0, 5)
     mapped = jax.vmap(lambda X, mass: x.M(X, p | {"platform_mass": mass}))(state[0], masses)

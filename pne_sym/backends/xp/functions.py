@@ -39,7 +39,7 @@ class Code(PythonText):
         lines += self._required(function.unpack_checks)
         for block in function.blocks:
             for entry in function.leg_inputs.get(block.leg_type, ()):
-                lines.append(f"{entry.symbol} = s.per_leg({entry.vector}, {entry.indices})")
+                lines.append(f"{entry.symbol} = s.take({entry.vector}, {entry.indices})")
             lines += self._block(block)
         arrays = [line for name in function.arrays for line in self._array(function, name)]
         lines += ["found = (", *arrays, ")", "s.settle()", "return found"]

@@ -16,6 +16,11 @@ _EXPRESSIONS = {
     "negative": "-{0}",
     "multiply": "{0} * {1}",
     "entry": "{0}[{n}, ...]",
+    "extend": "s.xp.concat(({0}, s.filled(0.0, ({n} - {0}.shape[0],))))",
+    "clear_at": "s.add_at({0}, -s.take({0}, {numbers}), {numbers})",
+    "add_forces": "s.add_at({0}, {1}[:, None, ...] * {2}, {numbers})",
+    "take_columns": "s.transposed(s.take(s.transposed({0}), {numbers}))",
+    "inverse_root": "1.0 / s.nonzero(s.sqrt({0}))",
     "split": "{0}[:{n}, ...], {0}[{n}:, ...]",
     "join": "s.xp.concat(({0}, {1}))",
     "beside": "s.xp.concat(({0}, {1}), axis=1)",
@@ -58,7 +63,8 @@ def _applied(step: Apply) -> str:
     """An operation at its operands."""
     operands = [operand.name for operand in step.operands]
     if step.operation in _EXPRESSIONS:
-        return _EXPRESSIONS[step.operation].format(*operands, n=(*step.numbers, 0)[0])
+        fixed = {"n": (*step.numbers, 0)[0], "numbers": step.numbers}
+        return _EXPRESSIONS[step.operation].format(*operands, **fixed)
     if "numbers" in inspect.signature(OPERATIONS[step.operation].compute).parameters:
         operands.append(str(step.numbers))
     return f"s.{step.operation}({', '.join(operands)})"
