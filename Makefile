@@ -46,6 +46,10 @@ demo: $(VENV)/core.stamp ## Generate the Stewart platform's model, then show it 
 test: $(VENV)/test.stamp ## Run all tests
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
 
+.PHONY: targets
+targets: $(VENV)/targets.stamp ## Test the array-API modules with NumPy, JAX, PyTorch and Dask
+	$(BIN)/python -m pytest -n 0 -o norecursedirs=".*" tests/targets
+
 .PHONY: bench
 bench: $(VENV)/core.stamp ## Measure the generated code and the generator
 	$(BIN)/python bench/c_speed.py
@@ -157,6 +161,10 @@ $(VENV)/core.stamp: pyproject.toml | $(BIN)/python
 
 $(VENV)/test.stamp: $(VENV)/core.stamp
 	$(BIN)/python -m pip install --quiet --editable '.[test]'
+	touch $@
+
+$(VENV)/targets.stamp: $(VENV)/test.stamp
+	$(BIN)/python -m pip install --quiet --editable '.[test,targets]'
 	touch $@
 
 $(VENV)/dev.stamp: $(VENV)/test.stamp

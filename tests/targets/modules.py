@@ -1,0 +1,61 @@
+"""Array-API modules in memory, and arguments for every function of a model."""
+
+from __future__ import annotations
+
+import inspect
+from functools import cache
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from pne_sym.backends.xp import XpBackend
+from pne_sym.model.manipulator import Manipulator
+from tests import models
+
+STATES = 3
+
+
+@cache
+def xp_module(manipulator: Manipulator) -> Any:
+    """NAME_xp.py, in memory."""
+    (text,) = XpBackend().emit(models.bundle(manipulator)).values()
+    made = ModuleType(f"{manipulator.name}_xp")
+    exec(compile(text, f"<{manipulator.name}_xp.py>", "exec"), made.__dict__)
+    return made
+
+
+def functions(x: Any) -> list[str]:
+    """Names of the public functions."""
+    members = {name: getattr(x, name) for name in x.__all__ if name != "parameters"}
+    return [name for name, member in members.items() if inspect.isfunction(member)]
+
+
+def vectors(m: Any, states: int = STATES) -> dict[str, Any]:
+    """States around home of the NumPy module m, and all other arguments."""
+    rng = np.random.default_rng(5)
+    X = m.HOME_X + 2e-3 * rng.uniform(-1.0, 1.0, (states, m.NQ))
+    q = m.inverse_kinematics(X)
+    found = {
+        "X": X,
+        "X0": X + 1e-4 * rng.uniform(-1.0, 1.0, X.shape),
+        "V": rng.uniform(-1.0, 1.0, (states, m.NV)),
+        "A": rng.uniform(-5.0, 5.0, (states, m.NV)),
+        "tau": rng.uniform(-5.0, 5.0, (states, m.NU)),
+        "wrench": rng.uniform(-5.0, 5.0, (states, m.NW)),
+        "weights": rng.uniform(0.5, 2.0, m.NU),
+        "q_actuated": q[:, list(m._DRIVEN_JOINTS)],
+        "q0": np.tile(m.HOME_Q, (states, 1)),
+        "rpy": rng.uniform(-1.0, 1.0, (states, 3)),
+    }
+    if hasattr(m, "rotation"):
+        found["R"] = m.rotation(X)
+        found["t"] = X[:, : {6: 3, 3: 0 if m.NQ - m.NV else 2}[m.NW]]
+    return found
+
+
+def call(module: Any, name: str, given: dict[str, Any], asarray: Any = np.asarray) -> Any:
+    """The outputs of a function at those of the given arguments that it takes."""
+    taken = inspect.signature(getattr(module, name)).parameters
+    found = getattr(module, name)(**{n: asarray(a) for n, a in given.items() if n in taken})
+    return found if isinstance(found, tuple) else (found,)

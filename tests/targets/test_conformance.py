@@ -1,0 +1,61 @@
+"""Every function of every catalogue entry, in every namespace, against the NumPy module."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import array_api_strict
+import jax
+import jax.numpy
+import numpy as np
+import pytest
+import torch
+
+from pne_sym import manipulators
+from tests import models
+from tests.targets.modules import call, functions, vectors, xp_module
+
+jax.config.update("jax_enable_x64", True)
+_SOLVED = {
+    "inverse_dynamics": "H",
+    "leg_reactions": "H",
+    "forward_dynamics": "M",
+    "complete_acceleration": "M",
+    "forward_kinematics": "H",
+    "project": "Hk",
+}
+_SAMPLE = ("stewart", "stewart_7ups", "planar_redundant", "tripod_3prs", "hexapod_6x6r")
+_EVERY = [(space, name) for space in (np, array_api_strict) for name in manipulators.names()]
+_SAMPLED = [(space, name) for space in (torch, jax.numpy) for name in _SAMPLE]
+
+
+def condition(m: Any, function: str, given: dict[str, Any]) -> float:
+    """Condition number of what a function solves; with constraints, of all that is solved."""
+    if function not in _SOLVED:
+        return 1.0
+    X = given["X"]
+    systems = [m.M(X), m.H(X)] if _SOLVED[function] in "MH" else []
+    if hasattr(m, "Hk"):
+        systems += [m.Hk(X), np.concatenate((m.H(X), m.Hk(X)), axis=-1)]
+    values = [np.linalg.svd(a, compute_uv=False) for a in systems]
+    return float(max(np.max(s[:, 0] / s[:, s[0] > 1e-9 * s[0, 0]][:, -1]) for s in values))
+
+
+@pytest.mark.parametrize(("space", "name"), [*_EVERY, *_SAMPLED])
+def test_equal_to_the_numpy_module(space: Any, name: str) -> None:
+    manipulator = models.catalogue(name)
+    m, x = models.module(manipulator), xp_module(manipulator)
+    given = vectors(m)
+    assert len(functions(x)) >= 10
+    for function in functions(x):
+        mine, theirs = call(x, function, given, space.asarray), call(m, function, given)
+        assert len(mine) == len(theirs), function
+        for a, b in zip(mine, theirs, strict=True):
+            found, wanted = np.from_dlpack(a), b
+            if function == "null_space":
+                found, wanted = (basis @ np.swapaxes(basis, -1, -2) for basis in (found, b))
+            assert found.shape == wanted.shape, function
+            np.testing.assert_array_equal(np.isnan(found), np.isnan(wanted), function)
+            error = np.nanmax(np.abs(found - wanted), initial=0.0)
+            scale = np.nanmax(np.abs(wanted), initial=0.0) or 1.0
+            assert error <= 1e-13 * condition(m, function, given) * scale, function
