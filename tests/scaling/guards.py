@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -28,12 +28,10 @@ class Tested(NamedTuple):
     scale: Array
 
 
-def checks_at(
-    bundle: Bundle, parameters: Mapping[str, Any], vectors: Mapping[str, Array]
-) -> Iterator[Tested]:
+def checks_at(bundle: Bundle, vectors: Mapping[str, Array]) -> Iterator[Tested]:
     """Every check of every function at the states X, V, A, q (states, ...)."""
     program = bundle.program
-    prepared = prepare(program, _entries(bundle, parameters))
+    prepared = prepare(program, _entries(bundle))
     for name, function in program.functions.items():
         values = evaluate(program, name, prepared, vectors).values
         for block in function.blocks:
@@ -42,12 +40,12 @@ def checks_at(
                 yield Tested(name, check, np.asarray(value), np.asarray(scale))
 
 
-def _entries(bundle: Bundle, parameters: Mapping[str, Any]) -> dict[str, Array]:
+def _entries(bundle: Bundle) -> dict[str, Array]:
     """Entries of the parameters and signs of the branches by name."""
     table = bundle.derivation.parameters
     found = {}
     for name, (field, index) in table.entries.items():
-        value = np.asarray(parameters[field.name], dtype=float)
+        value = np.asarray(field.default, dtype=float)
         flat = value.reshape(len(value) if field.leg_type else 1, -1)[:, index]
         found[name] = flat if field.leg_type else flat[0]
     branches = {name: np.array(signs, dtype=float) for name, (_, signs) in table.branches.items()}

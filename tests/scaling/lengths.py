@@ -2,54 +2,82 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
-from typing import Any
+from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.model.manipulator import Body, Home, Joint, Manipulator, Matrix3, Vector3
 from tests.whole.cases import Array
 
-_METRES = re.compile(r"(?<![a-zA-Z])m(?:\^(\d))?(?![a-zA-Z])")
+
+def larger(spec: Manipulator, factor: float) -> Manipulator:
+    """The mechanism `factor` times as large: what it is generated from, home and gravity too."""
+    squared = factor**2
+
+    def points(value: Vector3) -> Vector3:
+        x, y, z = (factor * v for v in value)
+        return (x, y, z)
+
+    def body(value: Body) -> Body:
+        rows = [tuple(squared * v for v in row) for row in value.inertia]
+        return replace(
+            value, centre_of_mass=points(value.centre_of_mass), inertia=cast("Matrix3", tuple(rows))
+        )
+
+    def joint(value: Joint) -> Joint:
+        return replace(
+            value,
+            offset=points(value.offset),
+            pitch=factor * value.pitch,
+            link=body(value.link),
+        )
+
+    legs = tuple(
+        replace(
+            leg,
+            base_point=points(leg.base_point),
+            platform_point=points(leg.platform_point),
+            joints=tuple(map(joint, leg.joints)),
+            platform_joint=replace(leg.platform_joint, offset=points(leg.platform_joint.offset)),
+        )
+        for leg in spec.legs
+    )
+    home = Home(
+        tuple(np.array(spec.home.X) * factor ** pose_powers(spec).astype(float)),
+        tuple(np.array(spec.home.q) * factor ** joint_powers(spec).astype(float)),
+    )
+    centre = None if spec.fixed_centre is None else points(spec.fixed_centre)
+    return replace(
+        spec,
+        name=f"{spec.name}_large" if factor > 1 else f"{spec.name}_small",
+        gravity=points(spec.gravity),
+        platform=body(spec.platform),
+        legs=legs,
+        home=home,
+        fixed_centre=centre,
+    )
 
 
-def power_of_length(unit: str) -> int:
-    """Power of the metre in a unit; that of the newton and the joule counts.
-
-    >>> [power_of_length(u) for u in ("kg m^2", "m/s^2", "1/m", "m/rad", "-", "N m", "J")]
-    [2, 1, -1, 1, 0, 2, 2]
-    """
-    above, _, below = unit.partition("/")
-    power = sum(int(n or 1) for n in _METRES.findall(above))
-    power -= sum(int(n or 1) for n in _METRES.findall(below))
-    return power + len(re.findall(r"\bN\b", above)) + 2 * len(re.findall(r"\bJ\b", above))
-
-
-def parameters(bundle: Bundle, factor: float) -> dict[str, Any]:
-    """The default parameters of the mechanism that is `factor` times as large."""
-    return {
-        f.name: np.asarray(f.default, dtype=float) * factor ** power_of_length(f.unit)
-        for f in bundle.derivation.parameters.fields
-    }
-
-
-def turning_extras(bundle: Bundle) -> list[bool]:
+def turning_extras(spec: Manipulator) -> list[bool]:
     """Whether each extra coordinate is an angle; that of a helix is, too."""
-    legs = bundle.manipulator.legs
-    return [legs[i].joints[j].kind != "P" for i, j in bundle.coordinates.extras]
+    return [joint.turns for leg in spec.legs for joint in leg.joints if joint.extra]
 
 
-def pose_powers(bundle: Bundle) -> Array:
+def pose_powers(spec: Manipulator) -> Array:
     """Power of the metre of the entries of X."""
-    pose = [int(name in ("x", "y", "z")) for name in bundle.coordinates.pose]
-    return np.array(pose + [int(not turns) for turns in turning_extras(bundle)])
+    places = {"point": 2, "planar": 2, "spatial": 3, "translational": 3, "spherical": 0}[spec.space]
+    extras = turning_extras(spec)
+    angles = len(spec.home.X) - places - len(extras)
+    return np.array([1] * places + [0] * angles + [int(not turns) for turns in extras])
 
 
 def rate_powers(bundle: Bundle) -> Array:
     """Power of the metre of the entries of V and A."""
     rates = [int(c < 3) for c in bundle.coordinates.components]
-    return np.array(rates + [int(not turns) for turns in turning_extras(bundle)])
+    return np.array(rates + [int(not turns) for turns in turning_extras(bundle.manipulator)])
 
 
 def force_powers(bundle: Bundle) -> Array:
@@ -57,16 +85,14 @@ def force_powers(bundle: Bundle) -> Array:
     return 2 - rate_powers(bundle)
 
 
-def joint_powers(bundle: Bundle) -> Array:
+def joint_powers(spec: Manipulator) -> Array:
     """Power of the metre of the entries of q."""
-    joints = [joint for leg in bundle.manipulator.legs for joint in leg.joints]
-    return np.array([int(joint.kind == "P") for joint in joints])
+    return np.array([int(not joint.turns) for leg in spec.legs for joint in leg.joints])
 
 
 def actuator_powers(bundle: Bundle) -> Array:
     """Power of the metre of the entries of tau."""
-    c = bundle.coordinates
-    joints = joint_powers(bundle)
+    c, joints = bundle.coordinates, joint_powers(bundle.manipulator)
     return 2 - np.array([joints[c.joints.index(a)] for a in c.actuators], dtype=int)
 
 
@@ -74,10 +100,10 @@ def scaled(bundle: Bundle, vectors: Mapping[str, Any], factor: float) -> dict[st
     """X, V, A, q (and tau, wrench) of the same motion in the larger mechanism."""
     c = bundle.coordinates
     powers = {
-        "X": pose_powers(bundle),
+        "X": pose_powers(bundle.manipulator),
         "V": rate_powers(bundle),
         "A": rate_powers(bundle),
-        "q": joint_powers(bundle),
+        "q": joint_powers(bundle.manipulator),
         "tau": actuator_powers(bundle),
         "wrench": force_powers(bundle)[: len(c.wrench)],
     }
