@@ -9557,7 +9557,8 @@ def _close_legs(plan, joints, X, q, p, rows, signs):
         steady = ~(largest > 1e-11)  # converged, or not a number
         open_[at[steady]] = False
         if rows:
-            turned = np.linalg.slogdet(jacobian[steady][:, :, rows])[0] * signs
+            with np.errstate(all="ignore"):
+                turned = np.linalg.slogdet(jacobian[steady][:, :, rows])[0] * signs
             q[at[steady][~(turned > 0.0).all(axis=1)]] = np.nan
     q[open_] = np.nan
 
@@ -9693,10 +9694,12 @@ def condition(X, p=None, *, length=None, q0=None):
 def _condition(name, X, p, length, q0, columns=NU):
     """sigma of the first columns of H, margins of the legs, status codes."""
     X = _vector(name, "X", X, NQ)
-    p = _DEFAULT if p is None else p
-    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
-        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
-    q0 = HOME_Q if q0 is None else _vector(name, "q0", q0, NJ)
+    p = _given(p)
+    if length is not None:
+        size = _numbers(name, "length", length)
+        if size.shape or not 0.0 < size < np.inf:
+            raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    q0 = _guess(q0)
     q = _closed(X, q0, p)
     lead = q.shape[:-1]
     guess = np.broadcast_to(q0, q.shape).reshape(-1, NJ)

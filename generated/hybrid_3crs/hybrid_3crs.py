@@ -4147,9 +4147,11 @@ def condition(X, p=None, *, length=None):
 def _condition(name, X, p, length, columns=NU):
     """sigma of the first columns of H, margins of the legs, status codes."""
     X = _vector(name, "X", X, NQ)
-    p = _DEFAULT if p is None else p
-    if length is not None and not (np.ndim(length) == 0 and 0.0 < float(length) < np.inf):
-        raise ValueError(f"{name}: length is {length!r}, expected a positive number")
+    p = _given(p)
+    if length is not None:
+        size = _numbers(name, "length", length)
+        if size.shape or not 0.0 < size < np.inf:
+            raise ValueError(f"{name}: length is {length!r}, expected a positive number")
     lead = X.shape[:-1]
     vectors = {"X": X.reshape(-1, NQ)}
     states = len(vectors["X"])
