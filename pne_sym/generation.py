@@ -140,17 +140,18 @@ def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(jobs, mp_context=context)
     try:
-        with _interrupts_held():
-            outcomes = pool.map(_compile_in_worker, todo)  # starts the workers
+        with _interrupts_held():  # the first of these starts the workers
+            outcomes = [pool.submit(_compile_in_worker, item) for item in todo]
         for outcome in outcomes:
-            yield outcome.result()
+            yield outcome.result().result()
     except BaseException:
-        # Nobody waits for the rest: the workers only compute, they write nothing.
+        # Nobody waits for the rest: the workers only compute, they write nothing.  Nothing is
+        # cancelled: the pool, told that its workers are gone, fails at what is cancelled already.
         for process in multiprocessing.active_children():
             process.terminate()
         raise
     finally:
-        pool.shutdown(cancel_futures=True)
+        pool.shutdown()
 
 
 @dataclass(frozen=True)
