@@ -5271,7 +5271,7 @@ int stewart_sps_complete_acceleration(const prepared *m, const real *X, const re
     for (size_t i = 0; i < FREE; ++i) {
         full[passive[i]] = 0;
     }
-    clear(a, N*PADDED);
+    clear(a, sizeof a/sizeof *a);
     for (size_t i = 0; i < N; ++i) {
         real *const row = a + i*PADDED;
         row[N] = -Z[passive[i]];
