@@ -1719,20 +1719,21 @@ static int close_rrrrrr(const prepared *m, const real *X, real *q)
     static const size_t rows[] = {0, 1, 2, 3, 4};
     static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
     enum { LEGS = 6, ROWS = 5, N = 5 };
-    real gap_rrrrrr[LEGS*ROWS], jacobian_rrrrrr[LEGS*ROWS*N], step[LEGS*N], size = 1;
+    real gap_rrrrrr[LEGS*ROWS], jacobian_rrrrrr[LEGS*ROWS*N] = { 0 };
+    real step[LEGS*N], size = 1;
     for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
         verdict values, *const t = &values;
         int code;
         start(1, t);
         closure_rrrrrr_run(m, 1, X, q, gap_rrrrrr, jacobian_rrrrrr, t);
-        check(LEGS*ROWS, 1, gap_rrrrrr, t->overflow);
-        check(LEGS*ROWS*N, 1, jacobian_rrrrrr, t->overflow);
+        check(sizeof gap_rrrrrr/sizeof *gap_rrrrrr, 1, gap_rrrrrr, t->overflow);
+        check(sizeof jacobian_rrrrrr/sizeof *jacobian_rrrrrr, 1, jacobian_rrrrrr, t->overflow);
         judge(t, 1, &code);
         if (code != HEXAPOD_6X6R_OK) {
             return 0;
         }
         size = newton_step(LEGS, ROWS, N, gap_rrrrrr, jacobian_rrrrrr, step);
-        for (size_t i = 0; i < LEGS*N; ++i) {
+        for (size_t i = 0; i < sizeof step/sizeof *step; ++i) {
             q[places[i]] += size > R(0.5) ? R(0.5)/size*step[i] : step[i];
         }
     }
