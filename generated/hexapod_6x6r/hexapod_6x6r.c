@@ -1719,7 +1719,7 @@ static int close_rrrrrr(const prepared *m, const real *X, real *q)
     static const size_t rows[] = {0, 1, 2, 3, 4};
     static const int home[] = {1, 1, 1, 1, 1, 1};  /* signs of the determinants */
     enum { LEGS = 6, ROWS = 5, N = 5 };
-    real gap_rrrrrr[LEGS*ROWS], jacobian_rrrrrr[LEGS*ROWS*N] = { 0 };
+    real gap_rrrrrr[LEGS*ROWS] = { 0 }, jacobian_rrrrrr[LEGS*ROWS*N] = { 0 };
     real step[LEGS*N], size = 1;
     for (int steps = 0; steps < 60 && size > STEADY; ++steps) {
         verdict values, *const t = &values;
