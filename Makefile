@@ -68,7 +68,7 @@ gallery: $(VENV)/test.stamp ## Write docs/gallery.md and its pictures, from gene
 check: test check-rest ## Run all that CI runs
 
 .PHONY: check-rest
-check-rest: check-format check-lint check-types check-layers check-generated check-c check-math wheel-test ## Run all of check but the tests
+check-rest: check-format check-lint check-types check-layers check-generated check-c check-analysers check-math wheel-test ## Run all of check but the tests
 	@echo "check-rest: passed, but for what is reported as NOT RUN"
 
 .PHONY: check-format

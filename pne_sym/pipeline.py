@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.registry import BACKENDS
+from pne_sym.derivation import Derivation
 from pne_sym.home_check import check_home
+from pne_sym.influence import completes, without_completion
 from pne_sym.lowering.program import lower
 from pne_sym.lowering.solve import SingularPatternError
 from pne_sym.mechanics.derive import derive
@@ -18,7 +20,13 @@ def compile_bundle(manipulator: Manipulator) -> Bundle:
     Raises:
         SpecError: the mechanism is outside the method; the message says why.
     """
-    derivation = derive(manipulator)
+    bundle = _lowered(manipulator, derive(manipulator))
+    if completes(bundle):
+        return bundle
+    return _lowered(manipulator, without_completion(bundle.derivation))
+
+
+def _lowered(manipulator: Manipulator, derivation: Derivation) -> Bundle:
     try:
         program = lower(derivation)
     except SingularPatternError as error:

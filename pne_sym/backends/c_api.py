@@ -164,6 +164,8 @@ def _completion(d: Described) -> str:
         return "SINGULAR: with fewer actuators than freedoms no accelerations will do."
     if not d.actuation.passive:
         return "A: there are no passive extra coordinates, whose accelerations would follow."
+    if d.actuation.idle and not d.completes:
+        return "A: no accelerations of passive extra coordinates bring other forces about."
     if not d.completes:
         return "A: passive extra coordinates are held too, whatever their accelerations."
     if not d.resolves:

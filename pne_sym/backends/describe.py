@@ -114,7 +114,8 @@ class Described:
     @property
     def completes(self) -> bool:
         """Whether accelerations of passive extra coordinates follow from those of the others."""
-        return self.actuation.idle > 0 and not self.is_underdriven
+        facts = self.actuation
+        return facts.idle > 0 and facts.completes and not self.is_underdriven
 
     @property
     def completes_freely(self) -> bool:

@@ -19,6 +19,8 @@ class Actuation:
         others: all other rows.
         is_determined: the other rows are independent: some forces hold them, whatever they need.
         is_coupled: actuators or constraints act on passive extra coordinates.
+        completes: rows left idle feel the accelerations of passive extra coordinates, which so
+            follow from the others.
     """
 
     rank: int
@@ -27,6 +29,7 @@ class Actuation:
     others: tuple[int, ...]
     is_determined: bool
     is_coupled: bool
+    completes: bool = True
 
     @property
     def idle(self) -> int:

@@ -261,7 +261,7 @@ class _Writer:
         A = self.given("A").value
         if not facts.is_determined and facts.passive:
             done = a.apply("impossible", A, numbers=[self.n["NV"]])
-        elif facts.idle == 0 or not facts.is_determined:
+        elif facts.idle == 0 or not (facts.completes and facts.is_determined):
             done = a.apply("same", A)
         else:
             done = self._completed(a, A)

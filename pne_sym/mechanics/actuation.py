@@ -137,7 +137,7 @@ def _samples(m: Manipulator) -> Iterator[Manipulator]:
         if start is None or not _is_alike(start, constraints):
             continue
         for _ in range(_POSES):
-            found = _elsewhere(start, rng)
+            found = elsewhere(start, rng)
             if found is not None and _is_alike(found, constraints):
                 yield found
 
@@ -167,7 +167,7 @@ def _closed(m: Manipulator, X: Array, q: Array) -> Manipulator | None:
     return replace(m, home=Home(tuple(X.tolist()), tuple(q.tolist())))
 
 
-def _elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
+def elsewhere(m: Manipulator, rng: np.random.Generator) -> Manipulator | None:
     """The same mechanism moved a random way along its freedoms."""
     motions, twist = motions_at_home(m), len(TASK_SPACES[m.space].components)
     step = motions @ rng.uniform(-1.0, 1.0, motions.shape[1])

@@ -153,7 +153,12 @@ class Line:
 def run(program: Path, states: int, seed: int, threads: int) -> tuple[list[Line], str, bool]:
     """Counts of each function, what was found at fault, and whether nothing was."""
     done = subprocess.run(
-        [program, str(states), str(seed), str(threads)], capture_output=True, text=True, check=False
+        [program, str(states), str(seed), str(threads)],
+        capture_output=True,
+        text=True,
+        check=False,
+        # How far back it knows where a thread was: what it cannot tell it does not report.
+        env={**os.environ, "TSAN_OPTIONS": "history_size=7"},
     )
     lines = []
     for line in done.stdout.splitlines():

@@ -24,13 +24,14 @@
 #define UNINITIALISED(x, size) ((void)0)
 #endif
 
-enum { ARRAYS = 8, MOST = 19, GUARD = 4, CODES = 5, THREADS = 16, EVERY = 64, ORDINARY = 6, KINDS = 12 };
+enum { ARRAYS = 8, MOST = 19, GUARD = 4, CODES = 5, THREADS = 16, EVERY = 64, TOGETHER = 8, ORDINARY = 6, KINDS = 12 };
 
 #include "interface.inc"
 
 static const model_type *standard;
 static int faults;
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
+static pthread_barrier_t round_begins;
 
 typedef struct {
     unsigned long states, code[CODES], status_ordinary, status_hostile, value_ordinary, value_hostile;
@@ -328,10 +329,20 @@ static void prepare_odd(worker *w)
     }
 }
 
+/*
+ * First all threads call each function in the same rounds, whatever else the machine does: a barrier
+ * orders rounds, so that what two threads touch within one is a race for the sanitizer even if it
+ * happens to run one of them after the other.  A free run of all could hide it: of a thread
+ * that ended long ago the sanitizer may have forgotten where it was.
+ */
 static void *run(void *given)
 {
     worker *const w = given;
     prepare_odd(w);
+    for (unsigned long r = 0; r < TOGETHER*FUNCTIONS; ++r) {
+        pthread_barrier_wait(&round_begins);
+        one_round(w, r%FUNCTIONS, 1);
+    }
     for (unsigned long done = 0, r = 0; done < w->rounds; ++r) {
         const size_t n = 1 + below(w, MOST);
         one_round(w, r%FUNCTIONS, n);
@@ -406,6 +417,9 @@ int main(int count, char **arguments)
     memcpy(&before, &model, sizeof model);
     standard = &model;
     find_home();
+    if (pthread_barrier_init(&round_begins, NULL, (unsigned)several)) {
+        return 3;
+    }
     for (size_t t = 0; t < several; ++t) {
         workers[t] = begin(seed*THREADS + t, states/several);
         if (pthread_create(&threads[t], NULL, run, workers[t])) {

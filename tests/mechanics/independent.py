@@ -347,7 +347,7 @@ def _size(f: Facts, j: int) -> Any:
     joints, squared = f.leg.joints, _size_at_home(f, j) ** 2
     turning = [k for k, joint in enumerate(joints) if joint.kind is not _SLIDE]
     offsets = [*(joint.offset for joint in joints), f.leg.platform_joint.offset]
-    for first, following in zip(turning, [*turning[1:], len(joints)], strict=True):
+    for first, following in zip(turning, [*turning, len(joints)][1:], strict=True):
         along = [joint.axis for joint in joints[first + 1 : following]]
         helical = joints[first].kind is JointKind.HELICAL
         along += [joints[first].axis] if helical or first == turning[0] else []

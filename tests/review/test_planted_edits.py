@@ -31,7 +31,7 @@ def appended(code: str) -> Edit:
 NAMED: dict[str, tuple[str, Edit]] = {
     "the wrench's sign": (
         "planar_3rpr.py",
-        substituted(r'required - (_external\("inverse_dynamics")', r"required + \1"),
+        substituted(r"(def inverse_dynamics\((?:.*\n)*?.*required) - external", r"\1 + external"),
     ),
     "another rotation": (
         "planar_3rpr.py",

@@ -24,6 +24,7 @@ SAMPLE = (
     "tripod_3rps",
     "stewart_sps",
     "hexapod_6x6r",
+    "quadrupod",
 )
 
 # What is switched off, all of it, and why.

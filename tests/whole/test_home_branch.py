@@ -53,8 +53,8 @@ def path_from_home(name: str, seed: int, reach: float) -> Array:
 
 def followed(name: str, path: Array) -> Array:
     """Displacements (PATH, NJ) along a path, each from the last; closed ones stay at home's."""
-    m, q = models.module(model_of(name)), None
-    found = []
+    spec = model_of(name)
+    m, q, found = models.module(spec), np.array(spec.home.q), []
     with np.errstate(all="ignore"):
         for X in path:
             q = m._closed(X, q, m._DEFAULT)

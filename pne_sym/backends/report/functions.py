@@ -120,6 +120,13 @@ def _coupled_statements(coordinates: Coordinates) -> Iterator[Statement]:
             rf"\qquad {gap} = \mathbf 0.",
         ),
     )
+    if not a.completes:
+        yield Statement(
+            r"None of this feels the accelerations $`\ddot{\mathbf y}`$ of these coordinates: it "
+            "is a condition on the others, and `complete_acceleration` changes nothing.",
+            (),
+        )
+        return
     yield Statement(
         r"`complete_acceleration` changes the entries $`\ddot{\mathbf y}`$ of these coordinates so "
         "that this holds" + ("." if unique else ", by the least change in the metric of M:"),
