@@ -43,8 +43,12 @@ demo: $(VENV)/core.stamp ## Generate the Stewart platform's model, then show it 
 	$(BIN)/python bench/demo.py
 
 .PHONY: test
-test: $(VENV)/test.stamp ## Run all tests
+test: $(VENV)/test.stamp ## Run the tests; of long lists of cases, a sample
 	$(BIN)/python -m pytest $(PYTEST_ARGS)
+
+.PHONY: test-all
+test-all: $(VENV)/test.stamp ## Run the tests, every case
+	$(BIN)/python -m pytest $(PYTEST_ARGS) -m ""
 
 .PHONY: targets
 targets: $(VENV)/targets.stamp ## Test the array-API modules with NumPy, JAX, PyTorch and Dask

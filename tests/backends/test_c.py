@@ -12,11 +12,12 @@ from pne_sym.backends.describe import describe
 from tests import models
 from tests.backends.c_agreement import assert_agree, vectors
 from tests.backends.c_library import FAST, OK, CLibrary
+from tests.sampling import sampled
 
 STATES = 19  # two lanes of 8 states, and a remainder
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", sampled(manipulators.names(), 3))
 def test_catalogue(name: str, tmp_path: Path) -> None:
     nominal, other = models.catalogue(name), models.random_spec(name, 1)
     module, p = models.module(nominal), models.live_parameters(nominal, other)

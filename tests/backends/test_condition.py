@@ -13,6 +13,7 @@ from pne_sym.model.manipulator import Manipulator
 from tests.backends.c_library import INVALID, OK, SINGULAR, Array, CLibrary
 from tests.models import bundle, catalogue, module, random_spec, state_at
 from tests.oracle.coordinates import displaced, platform_position, platform_rotation
+from tests.sampling import sampled
 from tests.whole.cases import guess_of
 from tests.whole.test_impossible import pose_of_singular_drives
 
@@ -45,7 +46,7 @@ def moment_rows(model: Any, spec: Manipulator) -> list[int]:
     return [*range(linear, first), *(first + k for k, turns in enumerate(turning) if turns)]
 
 
-@pytest.mark.parametrize("name", manipulators.names())
+@pytest.mark.parametrize("name", sampled(manipulators.names(), 6, keep=["planar_3rpr"]))
 def test_singular_values_and_codes(name: str, tmp_path: Path) -> None:
     """Those of H with rows scaled; the same numbers and codes in C, one by one and in a batch."""
     spec, model = catalogue(name), module(catalogue(name))

@@ -12,6 +12,7 @@ from pne_sym import manipulators
 from pne_sym.program.ir import Function, Program
 from tests.mechanics.structures import drawn
 from tests.models import bundle, catalogue
+from tests.sampling import sampled
 
 COMPLETED = (
     "two revolutes, universal at the platform",
@@ -49,7 +50,7 @@ def test_catalogue(name: str) -> None:
     assert not unguarded(bundle(catalogue(name)).program)
 
 
-@pytest.mark.parametrize("name", COMPLETED)
+@pytest.mark.parametrize("name", sampled(COMPLETED, 3))
 def test_completed_legs(name: str) -> None:
     compiled = bundle(drawn(name))
     sizes = [e for e in compiled.derivation.equations() if e.name.startswith("size_c")]

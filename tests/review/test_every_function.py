@@ -16,6 +16,7 @@ from pne_sym.review.difference import Verdict
 from pne_sym.review.model import Model, from_bundle
 from pne_sym.review.values import STATES, Runs
 from tests.models import bundle, catalogue, module
+from tests.sampling import sampled
 
 MODELS = (
     "fivebar_redundant",  # weights, null space, a point
@@ -36,7 +37,7 @@ def runs(name: str) -> Runs:
     return Runs(model(name), model(name), 0)
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", sampled(MODELS, 3))
 def test_numpy(name: str) -> None:
     (answer, _), generated = runs(name).answers, module(catalogue(name))
     assert answer.errors == {}
@@ -56,7 +57,7 @@ def test_numpy(name: str) -> None:
     assert runs(name).states >= STATES
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", sampled(MODELS, 3))
 def test_c(name: str) -> None:
     compiled = bundle(catalogue(name))
     calls = c_calls(model(name).functions)

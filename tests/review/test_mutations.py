@@ -22,6 +22,7 @@ from tests.review.versions import (
     version,
     with_rhs,
 )
+from tests.sampling import sampled
 
 
 def flip_last_term(rhs):
@@ -52,7 +53,7 @@ MUTATIONS = {
 }
 
 
-@pytest.mark.parametrize("case", MUTATIONS)
+@pytest.mark.parametrize("case", sampled(MUTATIONS, 3))
 def test_found_and_placed(case: str) -> None:
     name, mutation, spoilt = MUTATIONS[case]
     found = change("stewart", {name: with_rhs(mutation)})

@@ -20,6 +20,7 @@ from pne_sym.pipeline import compile_bundle
 from tests.oracle.coordinates import pose_size
 from tests.oracle.mechanisms import mechanism
 from tests.random.judging import judge
+from tests.sampling import sampled
 
 _UPS = "Rz0 Ry Px* | S"
 
@@ -87,7 +88,7 @@ REFUSED: dict[str, tuple[str, list[str], str]] = {
 """Space and platform joint -> legs and the mechanical reason; joints marked + lose the mark."""
 
 
-@pytest.mark.parametrize("name", ACCEPTED)
+@pytest.mark.parametrize("name", sampled(ACCEPTED, 4))
 def test_right(name: str) -> None:
     rng = np.random.default_rng(7)
     space, legs = ACCEPTED[name]
