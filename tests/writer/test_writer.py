@@ -194,7 +194,24 @@ def test_a_model_name_cannot_lead_out(name: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["", ".", "..", "../x.py", "a/b.py", "/etc/x", ".hidden", "a\\b", "a\x00b"]
+    "name",
+    [
+        *(
+            "",
+            ".",
+            "..",
+            "../x.py",
+            "/etc/x",
+            ".hidden",
+            "a\\b",
+            "a\x00b",
+            "a/../x.py",
+            "a/..",
+            "a/",
+        ),
+        *("a//b.py", "./b.py", "a/./b.py", "a/.git/b", "+/b.py", "+../b.py", "++a/b.py", "-a/b.py"),
+        *("a/b\\c.py", "a\n/b.py", "a/+b.py", "1/2/3/4/5/b.py", "a/" + 101 * "b", "\u03c6/b.py"),
+    ],
 )
 def test_a_file_name_cannot_lead_out(name: str, tmp_path: Path) -> None:
     with pytest.raises(ValueError, match="not a file name"):
