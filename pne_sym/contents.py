@@ -70,7 +70,11 @@ class Contents:
         """
         if GENERATOR in str(self.manifest.get("generator")):
             return True
-        return any(map(_has_header, self.folder.glob(f"{self.model}.*")))
+        for path in self.folder.glob(f"{self.model}.*"):
+            with contextlib.suppress(OSError):
+                if _has_header(path):
+                    return True
+        return False
 
     @property
     def targets(self) -> tuple[str, ...]:
@@ -82,7 +86,11 @@ class Contents:
 
     @cached_property
     def files(self) -> frozenset[str]:
-        """The files that are of some generation, by their paths below the folder, with slashes."""
+        """The files that are of some generation, by their paths below the folder, with slashes.
+
+        Raises:
+            OSError: it cannot be read whether a file is.
+        """
         return frozenset(path for path in self._claimed() if self._is_ours(path))
 
     def may_replace(self, file: str) -> bool:
@@ -102,7 +110,7 @@ class Contents:
     def _is_ours(self, file: str) -> bool:
         path = self.folder / file
         named = registry.is_named(self.model, file, self.targets)
-        return named or (not path.is_symlink() and _has_header(path))
+        return named or (path.is_file() and not path.is_symlink() and _has_header(path))
 
 
 def recorded_targets(manifest: Mapping[str, Any]) -> tuple[str, ...]:
@@ -122,6 +130,5 @@ def _manifest(path: Path) -> Mapping[str, Any]:
 
 def _has_header(path: Path) -> bool:
     """Whether a file says that this package wrote it."""
-    with contextlib.suppress(OSError), path.open("rb") as stream:
+    with path.open("rb") as stream:
         return is_signed(stream.read(SIGNED_BYTES))
-    return False

@@ -18,10 +18,11 @@ _PYTHON = Syntax(
 _ARRAYS = Syntax(
     comments=("#",),
     function=r"def (\w+)\(",
-    ends=r"(?:return|found|def)\b|s\.|\w+ = s\.(?:total|take)\(|[{}]",
+    ends=r"(?:return|found|def)\b|s\.(?:require|settle)\(|\w+ = s\.(?:total|take)\(|[{}]",
 )
 _C = Syntax(
-    comments=("//", "/*"),
+    comments=("/*", "//"),
+    closing="*/",
     function=r"[A-Za-z_][\w\s*]*?\b(\w+)\(",
     ends=r"(?:ok|return|for|if)\b|[{}]|#if|#end",
 )

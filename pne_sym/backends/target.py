@@ -23,14 +23,17 @@ class Syntax:
     The id of an equation stands in a comment of its own, `(ID) title`, above its statements.
 
     Attributes:
-        comments: what begins a comment.
+        comments: what begins a comment; the first of them begins those of statements.
         function: pattern of a line that begins a function; its group is the name.
         ends: pattern of a line, without indentation, that is no statement of an equation.
+        closing: what ends a comment of the first kind, which may take several lines; "" where
+            lines end it.
     """
 
     comments: tuple[str, ...]
     function: str
     ends: str
+    closing: str = ""
 
 
 @dataclass(frozen=True)

@@ -55,8 +55,11 @@ def _runs(text: str, syntax: Syntax) -> Iterator[tuple[str, str, tuple[str, ...]
     """(function, equation id, statements) of every run of statements."""
     function_head, ends = re.compile(syntax.function), re.compile(rf"\s*(?:{syntax.ends})|\s*$")
     comment = re.compile(rf"\s*(?:{'|'.join(map(re.escape, syntax.comments))})")
-    function, head, lines = "", "", list[str]()
+    function, head, lines, is_open = "", "", list[str](), False
     for line in text.split("\n"):
+        if is_open:
+            is_open = syntax.closing not in line
+            continue
         started, commented = function_head.match(line), comment.match(line)
         if started or commented or ends.match(line):
             if head:
@@ -64,10 +67,17 @@ def _runs(text: str, syntax: Syntax) -> Iterator[tuple[str, str, tuple[str, ...]
             named = _ID.match(line, commented.end()) if commented else None
             head, lines = (named.group(1) if named else ""), []
             function = started.group(1) if started else function
+            is_open = _stays_open(line, syntax)
         elif head:
             lines.append(line.strip())
     if head:
         yield function, head, tuple(lines)
+
+
+def _stays_open(line: str, syntax: Syntax) -> bool:
+    """Whether a comment that begins a line goes on in the next."""
+    begun = line.lstrip().startswith(syntax.comments[0])
+    return bool(syntax.closing) and begun and syntax.closing not in line
 
 
 def program_passages(bundle: Bundle, equation: str | None) -> tuple[Passage, ...]:
