@@ -4,19 +4,13 @@ from __future__ import annotations
 
 import difflib
 import enum
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from pne_sym.writer import (
-    MODEL_NAME,
-    check_names,
-    generated_names,
-    is_generated,
-    readable_errors,
-)
-
-_NOT_PRODUCT = frozenset({"__pycache__"})
+from pne_sym.contents import MODEL_NAME, Contents, check_names
+from pne_sym.writer import readable_errors
 
 
 class DifferenceKind(enum.StrEnum):
@@ -51,7 +45,7 @@ def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Differen
     Args:
         out: the output folder.
         name: the model's name.
-        files: file name -> text, as for `write_model`.
+        files: path below the model's folder -> text, as for `write_model`.
 
     Returns:
         The differences, sorted by path; empty if the folder is up to date.
@@ -63,8 +57,7 @@ def check_model(out: Path, name: str, files: Mapping[str, str]) -> list[Differen
     check_names(name, files)
     folder = out / name
     with readable_errors(folder, "read"):
-        present = {path.name for path in folder.iterdir()} if folder.is_dir() else set()
-        present &= (generated_names(name) | set(files)) - _NOT_PRODUCT
+        present = Contents(folder).files | {f for f in files if os.path.lexists(folder / f)}
         differences = []
         for file in sorted(present | set(files)):
             path = Path(name, file)
@@ -85,7 +78,9 @@ def models_in(out: Path) -> list[str]:
         OutputError: the folder cannot be read.
     """
     with readable_errors(out, "read"):
-        names = [path.name for path in out.iterdir() if path.is_dir() and is_generated(path)]
+        names = [
+            path.name for path in out.iterdir() if path.is_dir() and Contents(path).is_generated
+        ]
     return sorted(name for name in names if MODEL_NAME.fullmatch(name))
 
 

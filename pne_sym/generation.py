@@ -16,13 +16,16 @@ import os
 import signal
 import traceback
 import warnings
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from pne_sym import comparison, writer
+from pne_sym.backends import registry
+from pne_sym.backends.target import TargetError
+from pne_sym.contents import Contents
 
 if TYPE_CHECKING:
     from pne_sym.model.manipulator import Manipulator
@@ -41,7 +44,7 @@ class Compiled:
 
     Attributes:
         manipulator: the manipulator.
-        files: file name in the model's folder -> text.
+        files: path below the model's folder -> text.
     """
 
     manipulator: Manipulator
@@ -68,16 +71,26 @@ def find(source: str | os.PathLike[str] | Manipulator) -> Manipulator:
     return read_spec(Path(source))
 
 
-def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLike[str]) -> Path:
+def generate(
+    source: str | os.PathLike[str] | Manipulator,
+    out: str | os.PathLike[str],
+    targets: Collection[str] | None = None,
+) -> Path:
     """Generate a manipulator's folder below `out`, replacing what was generated as a whole.
 
     Other files in the folder stay.
+
+    Args:
+        source: a name in the catalogue, a spec file or a manipulator.
+        out: the output folder.
+        targets: what code to write, such as ("numpy", "c", "xp"); by default NumPy and C.
 
     Returns:
         The model's folder.
 
     Raises:
         SpecError: the source is at fault.
+        TargetError: there is no such target, or it cannot print this model.
         OutputError: the folder cannot be written.
     """
     from pne_sym.mechanics.mobility import check_mobility
@@ -85,25 +98,48 @@ def generate(source: str | os.PathLike[str] | Manipulator, out: str | os.PathLik
 
     manipulator = find(source)
     check_mobility(manipulator)
-    return writer.write_model(Path(out), manipulator.name, compile_model(manipulator))
+    files = compile_model(manipulator, targets)
+    return writer.write_model(Path(out), manipulator.name, files)
 
 
 def check(
-    source: str | os.PathLike[str] | Manipulator, out: str | os.PathLike[str]
+    source: str | os.PathLike[str] | Manipulator,
+    out: str | os.PathLike[str],
+    targets: Collection[str] | None = None,
 ) -> list[comparison.Difference]:
     """Compare a manipulator's folder below `out` with what would be generated.
+
+    Args:
+        source: a name in the catalogue, a spec file or a manipulator.
+        out: the output folder.
+        targets: what code should stand there; by default what the folder's manifest says.
 
     Returns:
         The differences; none if the folder is up to date.
 
     Raises:
         SpecError: the source is at fault.
+        TargetError: there is no such target, or it cannot print this model.
         OutputError: the folder cannot be read.
     """
     from pne_sym.pipeline import compile_model
 
     manipulator = find(source)
-    return comparison.check_model(Path(out), manipulator.name, compile_model(manipulator))
+    names = targets_of(Path(out) / manipulator.name) if targets is None else targets
+    files = compile_model(manipulator, names)
+    return comparison.check_model(Path(out), manipulator.name, files)
+
+
+def targets_of(folder: Path) -> tuple[str, ...]:
+    """The targets that a model's folder was generated with; those of default where it is missing.
+
+    Raises:
+        TargetError: its manifest names one that this version does not have.
+    """
+    try:
+        return registry.chosen(Contents(folder).targets)
+    except TargetError as error:
+        raise TargetError(f"{folder}: its manifest names its targets: {error}") from error
 
 
 def remarks(compiled: Compiled) -> list[str]:
@@ -124,24 +160,35 @@ def remarks(compiled: Compiled) -> list[str]:
     return lines
 
 
-def compile_many(manipulators: Iterable[Manipulator], jobs: int = 1) -> Iterator[Compiled]:
+def compile_many(
+    manipulators: Iterable[Manipulator],
+    jobs: int = 1,
+    targets: Mapping[str, Collection[str]] | None = None,
+) -> Iterator[Compiled]:
     """Compile manipulators, in their order, in up to `jobs` processes at once.
+
+    Args:
+        manipulators: what to compile.
+        jobs: how many at once.
+        targets: of each, by its name; those of default where it is not there.
 
     Raises:
         SpecError, InputError: a manipulator is outside the method.
+        TargetError: there is no such target, or it cannot print a model.
     """
     from pne_sym.pipeline import compile_model
 
-    todo = tuple(manipulators)
+    wanted = targets or {}
+    todo = tuple((item, wanted.get(item.name)) for item in manipulators)
     jobs = min(jobs, len(todo))
     if jobs <= 1:
-        yield from (Compiled(item, compile_model(item)) for item in todo)
+        yield from (Compiled(item, compile_model(item, names)) for item, names in todo)
         return
     context = multiprocessing.get_context("spawn")
     pool = ProcessPoolExecutor(jobs, mp_context=context)
     try:
         with _interrupts_held():  # the first of these starts the workers
-            outcomes = [pool.submit(_compile_in_worker, item) for item in todo]
+            outcomes = [pool.submit(_compile_in_worker, *each) for each in todo]
         for outcome in outcomes:
             yield outcome.result().result()
     except BaseException:
@@ -173,15 +220,15 @@ class _Outcome:
         return self.compiled
 
 
-def _compile_in_worker(manipulator: Manipulator) -> _Outcome:
+def _compile_in_worker(manipulator: Manipulator, targets: Collection[str] | None) -> _Outcome:
     from pne_sym.model.errors import SpecError
     from pne_sym.pipeline import compile_model
 
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
-            compiled = Compiled(manipulator, compile_model(manipulator))
-        except SpecError as error:
+            compiled = Compiled(manipulator, compile_model(manipulator, targets))
+        except (SpecError, TargetError) as error:
             return _Outcome(input_error=str(error))
         except Exception:  # noqa: BLE001 - told by the parent
             return _Outcome(internal_error=traceback.format_exc())

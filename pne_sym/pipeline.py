@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.registry import BACKENDS
+from pne_sym.backends.emission import emit
+from pne_sym.backends.registry import chosen
 from pne_sym.derivation import Derivation
 from pne_sym.home_check import check_home
 from pne_sym.influence import completes, without_completion
@@ -36,18 +39,24 @@ def _lowered(manipulator: Manipulator, derivation: Derivation) -> Bundle:
     return Bundle(manipulator, derivation, program)
 
 
-def compile_model(manipulator: Manipulator) -> dict[str, str]:
-    """All files of a model's folder: file name -> text.
+def compile_model(
+    manipulator: Manipulator, targets: Collection[str] | None = None
+) -> dict[str, str]:
+    """All files of a model's folder: path below it, with slashes -> text.
 
     Warns with `SpecWarning` where a function has no value at home or at a pose around it.
+
+    Args:
+        manipulator: the specification.
+        targets: names of back ends; by default "numpy" and "c". Manifest and report are always
+            among the files.
 
     Raises:
         SpecError: the mechanism is outside the method, or its model is not finite at home; the
             message says why.
+        TargetError: there is no such target, or it cannot print this model.
     """
+    names = None if targets is None else chosen(targets)
     bundle = compile_bundle(manipulator)
     check_home(bundle)
-    files: dict[str, str] = {}
-    for backend in BACKENDS:
-        files.update(backend.emit(bundle))
-    return dict(sorted(files.items()))
+    return emit(bundle, names)

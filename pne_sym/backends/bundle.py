@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Protocol
 
+from pne_sym.backends.registry import default
 from pne_sym.derivation import Coordinates, Derivation
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.ir import Program
@@ -18,11 +19,13 @@ class Bundle:
         manipulator: the specification.
         derivation: named vector equations.
         program: scalar code.
+        targets: names of those that are printed together; the manifest tells them.
     """
 
     manipulator: Manipulator
     derivation: Derivation
     program: Program
+    targets: tuple[str, ...] = field(default_factory=default)
 
     @property
     def name(self) -> str:
@@ -42,9 +45,11 @@ class Bundle:
 
 
 class Backend(Protocol):
-    """A back end: compiled manipulator to files of its folder."""
+    """A back end: compiled manipulator to files of its folder; what others know is its `Target`."""
 
-    name: str
+    @property
+    def operations(self) -> frozenset[str] | None:
+        """Operations of public functions that it prints; None: it has functions of its own."""
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
-        """File name -> text."""
+        """Path below the model's folder, with slashes -> text."""

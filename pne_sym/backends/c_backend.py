@@ -97,7 +97,7 @@ class CView:
 class CBackend:
     """Emits NAME.h and NAME.c."""
 
-    name = "c"
+    operations = None
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""

@@ -11,6 +11,7 @@ from typing import Any
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.c_api import Api, api_table
 from pne_sym.backends.describe import describe
+from pne_sym.backends.registry import default
 from pne_sym.derivation import ParameterField
 from pne_sym.model.full_form import to_full_form
 from pne_sym.program.count import count_block, count_expression
@@ -23,7 +24,7 @@ FORMAT = 2
 class ManifestBackend:
     """Emits NAME.json."""
 
-    name = "manifest"
+    operations = None
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
@@ -35,6 +36,7 @@ def _manifest(bundle: Bundle) -> dict[str, Any]:
     return {
         "format": FORMAT,
         "generator": f"pne_sym {version('pne-sym')}",
+        **({"targets": bundle.targets} if bundle.targets != default() else {}),
         "name": bundle.name,
         "title": bundle.manipulator.title,
         "space": c.space,

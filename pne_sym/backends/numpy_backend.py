@@ -46,7 +46,7 @@ class ModuleView:
 class NumpyBackend:
     """Emits NAME.py and __init__.py."""
 
-    name = "numpy"
+    operations = None
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""

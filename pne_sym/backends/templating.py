@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 from pathlib import Path
 
@@ -50,3 +51,14 @@ def environment() -> jinja2.Environment:
 def render(template: str, **fields: object) -> str:
     """A template filled with ready strings."""
     return environment().get_template(template).render(**fields)
+
+
+@cache
+def methods(folder: str) -> frozenset[str]:
+    """Names of the methods that Python templates of a folder define."""
+    texts = (
+        path.read_text(encoding="utf-8") for path in template_folder().joinpath(folder).iterdir()
+    )
+    return frozenset(
+        name for t in texts for name in re.findall(r"^    def (\w+)\(self", t, re.MULTILINE)
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import shlex
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -13,6 +13,7 @@ import typer
 import typer.core
 
 from pne_sym import comparison, writer
+from pne_sym.backends import registry
 from pne_sym.cli import drawing, listing, review, starter
 from pne_sym.cli.arguments import COMMANDS, GENERATE
 from pne_sym.cli.console import Report
@@ -56,11 +57,18 @@ Jobs = Annotated[
     int,
     typer.Option("--jobs", "-j", min=1, metavar="N", help="Models worked on at the same time."),
 ]
+TARGETS = (
+    "What code to write, names with commas between: "
+    + "; ".join(f"{t.name}: {t.title}" for t in registry.TARGETS if not t.always)
+    + ". Derivation and manifest are always written."
+)
+Target = Annotated[str, typer.Option("--target", metavar="NAMES", help=TARGETS)]
 Quiet = Annotated[
     bool, typer.Option("--quiet", "-q", help="Tell only errors, warnings and differences.")
 ]
 
 DEFAULT_OUT = Path("generated")
+DEFAULT_TARGETS = ",".join(registry.default())
 ALL_CORES = os.cpu_count() or 1
 
 
@@ -87,6 +95,7 @@ Examples:
   pne-gen new my_robot.toml --legs 6-UPS   a first specification, to be edited
   pne-gen my_robot.toml --out generated/   a manipulator of your own
   pne-gen all --out generated/ --jobs 4    the whole catalogue
+  pne-gen stewart --target numpy,c,xp      other code too
   pne-gen check stewart --out generated/   is what stands there up to date?
   pne-gen list                             what the catalogue has
   pne-gen draw stewart --out stewart.svg   a picture of it; --pose, --path
@@ -126,32 +135,38 @@ def generate(
         ),
     ],
     out: Out = DEFAULT_OUT,
+    target: Target = DEFAULT_TARGETS,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Generate models.
 
     DIR/NAME/ gets the derivation (NAME.md), the NumPy code (NAME.py), the C code
-    (NAME.h, NAME.c) and a manifest (NAME.json). What was generated there before is
-    replaced as a whole; other files in the folder stay.
+    (NAME.h, NAME.c) and a manifest (NAME.json), or other code (--target). What was
+    generated there before, of other targets too, is replaced as a whole; other files in
+    the folder stay.
     """
     with told(debug=debug):
+        names = registry.chosen(target)
         writer.check_output(out)
         _check_command(sources[0])
-        _generate(_find(sources), out, jobs=1, report=Report(quiet=quiet))
+        _generate(_find(sources), out, jobs=1, report=Report(quiet=quiet), targets=names)
 
 
 @app.command("all")
 def generate_all(
     out: Out = DEFAULT_OUT,
+    target: Target = DEFAULT_TARGETS,
     jobs: Jobs = ALL_CORES,
     quiet: Quiet = False,
     debug: Debug = False,
 ) -> None:
     """Generate the whole catalogue."""
     with told(debug=debug):
+        names = registry.chosen(target)
         writer.check_output(out)
-        _generate(_find(_catalogue()), out, jobs=jobs, report=Report(quiet=quiet))
+        report = Report(quiet=quiet)
+        _generate(_find(_catalogue()), out, jobs=jobs, report=report, targets=names)
 
 
 @app.command("list")
@@ -181,6 +196,16 @@ def check(
         ),
     ] = None,
     out: Out = DEFAULT_OUT,
+    target: Annotated[
+        str | None,
+        typer.Option(
+            "--target",
+            metavar="NAMES",
+            show_default=False,
+            help="What code should stand there, as for generating. "
+            "Default: what each folder was generated with, as its manifest says.",
+        ),
+    ] = None,
     jobs: Jobs = 1,
     quiet: Quiet = False,
     debug: Debug = False,
@@ -191,8 +216,10 @@ def check(
     1: it differs; the differences are shown, and the command that mends them.
     """
     with told(debug=debug):
+        names = None if target is None else registry.chosen(target)
         wanted = _wanted(sources or [], out)
-        if not _check(wanted, _find(wanted), out, jobs=jobs, report=Report(quiet=quiet)):
+        models, report = _find(wanted), Report(quiet=quiet)
+        if not _check(wanted, models, out, jobs=jobs, report=report, targets=names):
             raise typer.Exit(DIFFERENT)
 
 
@@ -256,11 +283,18 @@ def _find(sources: Sequence[str]) -> list[Manipulator]:
     return models
 
 
-def _generate(models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report) -> None:
+def _generate(
+    models: Sequence[Manipulator],
+    out: Path,
+    *,
+    jobs: int,
+    report: Report,
+    targets: Sequence[str],
+) -> None:
     from pne_sym.generation import compile_many, remarks
 
     with report.progress(len(models)) as step:
-        compiling = compile_many(models, jobs)
+        compiling = compile_many(models, jobs, {model.name: targets for model in models})
         for model in models:
             step.working_on(model.name)
             compiled = next(compiling)
@@ -274,14 +308,21 @@ def _generate(models: Sequence[Manipulator], out: Path, *, jobs: int, report: Re
 
 
 def _check(
-    sources: Sequence[str], models: Sequence[Manipulator], out: Path, *, jobs: int, report: Report
+    sources: Sequence[str],
+    models: Sequence[Manipulator],
+    out: Path,
+    *,
+    jobs: int,
+    report: Report,
+    targets: tuple[str, ...] | None,
 ) -> bool:
     """Report every difference; return whether there is none."""
-    from pne_sym.generation import compile_many
+    from pne_sym.generation import compile_many, targets_of
 
-    differing = []
+    differing = {}
+    wanted = {m.name: targets_of(out / m.name) if targets is None else targets for m in models}
     with report.progress(len(models)) as step:
-        compiling = compile_many(models, jobs)
+        compiling = compile_many(models, jobs, wanted)
         for source, model in zip(sources, models, strict=True):
             step.working_on(model.name)
             compiled, name = next(compiling), model.name
@@ -291,10 +332,17 @@ def _check(
                 for line in difference.diff.split("\n")[:-1]:
                     report.difference(line)
             if differences:
-                differing.append(source)
+                differing[source] = wanted[name]
             else:
                 report.line(f"up to date: {out / name}")
             step.done()
-    if differing:
-        report.difference(f"to mend it: {shlex.join(['pne-gen', *differing, '--out', str(out)])}")
+    for names in dict.fromkeys(differing.values()):
+        report.difference(f"to mend it: {_mending(differing, names, out)}")
     return not differing
+
+
+def _mending(differing: Mapping[str, tuple[str, ...]], names: tuple[str, ...], out: Path) -> str:
+    """The command that generates anew what differs, of the sources with these targets."""
+    sources = [source for source, its in differing.items() if its == names]
+    options = ["--target", ",".join(names)] if names != registry.default() else []
+    return shlex.join(["pne-gen", *sources, "--out", str(out), *options])

@@ -13,7 +13,7 @@ GENERATE = "NAME_OR_SPEC..."
 
 COMMANDS = ("list", "all", "check", "explain", "diff", "new", "draw")
 OPTIONS_WITH_VALUE = (
-    *("--out", "-o", "--jobs", "-j"),
+    *("--out", "-o", "--jobs", "-j", "--target"),
     *("--stage", "--tolerance", "--legs", "--space"),
     *("--pose", "--q", "--path", "--fps", "--azimuth", "--elevation"),
 )

@@ -11,6 +11,7 @@ from typing import TextIO
 
 import typer
 
+from pne_sym.backends.target import TargetError
 from pne_sym.cli.console import discard_output, flush_output, print_error, print_warning
 from pne_sym.writer import OutputError
 
@@ -43,7 +44,7 @@ def told(*, debug: bool) -> Iterator[None]:
                 yield
     except typer.Exit:
         raise
-    except (InputError, SpecError, OutputError) as error:
+    except (InputError, SpecError, OutputError, TargetError) as error:
         print_error(str(error))
         raise typer.Exit(INPUT_AT_FAULT) from error
     except KeyboardInterrupt as error:

@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import Annotated
 
 import typer
 
+from pne_sym.backends import registry
 from pne_sym.cli.console import Report
 from pne_sym.cli.faults import DIFFERENT, told
 from pne_sym.cli.options import Debug, Source
-
-
-class Stage(StrEnum):
-    """How far along the pipeline to look."""
-
-    SPEC = "spec"
-    DERIVATION = "derivation"
-    PROGRAM = "program"
-    C = "c"
-    NUMPY = "numpy"
 
 
 def explain(
@@ -33,12 +23,14 @@ def explain(
         ),
     ] = None,
     stage: Annotated[
-        Stage | None,
+        str | None,
         typer.Option(
             "--stage",
+            metavar="STAGE",
             show_default=False,
             help="spec: the specification's full form (JSON). derivation: the equation. "
-            "program, c, numpy: its statements. Default: the equation and the program's.",
+            f"{', '.join(registry.stages()[2:])}: its statements. "
+            "Default: the equation and the program's.",
         ),
     ] = None,
     transitively: Annotated[
@@ -55,8 +47,10 @@ def explain(
     with told(debug=debug):
         from pne_sym.generation import InputError, find
 
+        if stage is not None:
+            registry.check_stage(stage)
         manipulator, report = find(source), Report()
-        if stage is Stage.SPEC:
+        if stage == "spec":
             from pne_sym.review.explain_text import spec_text
 
             if equation is not None:
@@ -65,13 +59,13 @@ def explain(
             return
         from pne_sym.pipeline import compile_bundle
         from pne_sym.review.explain import UnknownEquationError
-        from pne_sym.review.explain_text import NotGeneratedError, stage_lines
+        from pne_sym.review.explain_text import stage_lines
 
         bundle = compile_bundle(manipulator)
         try:
             for line in stage_lines(bundle, stage, equation, transitively=transitively):
                 report.line(line)
-        except (UnknownEquationError, NotGeneratedError) as error:
+        except UnknownEquationError as error:
             raise InputError(str(error)) from error
 
 

@@ -157,6 +157,12 @@ class PublicFunction:
         """Functions of the program that it runs."""
         return tuple(dict.fromkeys(s.function for s in self.steps if isinstance(s, Run)))
 
+    @property
+    def operations(self) -> frozenset[str]:
+        """What a back end must provide to print it: operations by name, "search" for searches."""
+        applied = {s.operation for s in self.steps if isinstance(s, Apply)}
+        return frozenset(applied | {"search" for s in self.steps if isinstance(s, Search)})
+
 
 class StepError(Exception):
     """A public function that must not be printed."""

@@ -7,13 +7,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.target import Syntax
 from pne_sym.review.plain import plain
 
-_HEAD = re.compile(r"\s*(?:#|//|/\*)\s*\(([A-Za-z0-9_-]+)\)")
-_COMMENT = re.compile(r"\s*(?:#|//|/\*)")
-_PYTHON_FUNCTION = re.compile(r"def (\w+)\(")
-_C_FUNCTION = re.compile(r"[A-Za-z_][\w\s*]*?\b(\w+)\(")
-_LAST = re.compile(r"\s*(?:ok\b|return\b|shared\b|def\b|[{}]|#if|#end|for\b|if\b)|\s*$")
+_ID = re.compile(r"\s*\(([A-Za-z0-9_-]+)\)")
 
 
 @dataclass(frozen=True)
@@ -29,12 +26,19 @@ class Passage:
     lines: tuple[str, ...]
 
 
-def passages(text: str, equation: str) -> tuple[Passage, ...]:
-    """The statements under an equation's comment in a Python or C file."""
+def passages(texts: Mapping[str, str], equation: str, syntax: Syntax) -> tuple[Passage, ...]:
+    """The statements under an equation's comment.
+
+    Args:
+        texts: files of code by their paths.
+        equation: its id.
+        syntax: of the code.
+    """
     in_function: dict[str, list[str]] = {}
-    for function, head, lines in _runs(text):
-        if head == equation:
-            in_function.setdefault(function, []).extend(lines)
+    for text in texts.values():
+        for function, head, lines in _runs(text, syntax):
+            if head == equation:
+                in_function.setdefault(function, []).extend(lines)
     return _grouped({function: tuple(lines) for function, lines in in_function.items()})
 
 
@@ -47,21 +51,33 @@ def _grouped(in_function: Mapping[str, tuple[str, ...]]) -> tuple[Passage, ...]:
     return tuple(Passage(tuple(places), lines) for lines, places in found.items())
 
 
-def _runs(text: str) -> Iterator[tuple[str, str, tuple[str, ...]]]:
+def _runs(text: str, syntax: Syntax) -> Iterator[tuple[str, str, tuple[str, ...]]]:
     """(function, equation id, statements) of every run of statements."""
-    function, head, lines = "", "", list[str]()
+    function_head, ends = re.compile(syntax.function), re.compile(rf"\s*(?:{syntax.ends})|\s*$")
+    comment = re.compile(rf"\s*(?:{'|'.join(map(re.escape, syntax.comments))})")
+    function, head, lines, is_open = "", "", list[str](), False
     for line in text.split("\n"):
-        started = _PYTHON_FUNCTION.match(line) or _C_FUNCTION.match(line)
-        commented = _HEAD.match(line)
-        if started or commented or _COMMENT.match(line) or _LAST.match(line):
+        if is_open:
+            is_open = syntax.closing not in line
+            continue
+        started, commented = function_head.match(line), comment.match(line)
+        if started or commented or ends.match(line):
             if head:
                 yield function, head, tuple(lines)
-            head, lines = (commented.group(1) if commented else ""), []
+            named = _ID.match(line, commented.end()) if commented else None
+            head, lines = (named.group(1) if named else ""), []
             function = started.group(1) if started else function
+            is_open = _stays_open(line, syntax)
         elif head:
             lines.append(line.strip())
     if head:
         yield function, head, tuple(lines)
+
+
+def _stays_open(line: str, syntax: Syntax) -> bool:
+    """Whether a comment that begins a line goes on in the next."""
+    begun = line.lstrip().startswith(syntax.comments[0])
+    return bool(syntax.closing) and begun and syntax.closing not in line
 
 
 def program_passages(bundle: Bundle, equation: str | None) -> tuple[Passage, ...]:

@@ -15,6 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from pne_sym.backends import registry
 from pne_sym.backends.describe import Described, describe
 from pne_sym.review.blocks import Terms, c_blocks, numpy_blocks
 from pne_sym.review.difference import (
@@ -34,7 +35,6 @@ from pne_sym.review.reproduction import reproduced
 from pne_sym.review.sandbox import best_isolation
 from pne_sym.review.values import Runs
 from pne_sym.review.written import as_written
-from pne_sym.writer import generated_names
 
 TOLERANCE = 1e-9
 
@@ -64,15 +64,17 @@ def compare(
     found = Comparison(before.label, after.label, tolerance, (0, 0), (), (), (), ())
     changed: list[str] = []
     if before.folder is not None or after.folder is not None:
+        before, after = _of_the_same_targets(before, after)
         changed = differing(before.files, after.files)
         same = len(before.files.keys() | after.files.keys()) - len(changed)
         found = replace(found, identical_files=same)
-        if not set(changed) & _generated(before, after):
+        if not any(_may_be_generated(p, before, after) for p in changed):
             return replace(found, files=file_differences(before.files, after.files, ()))
         before, after = reproduced(before), reproduced(after)
     ours = before.bundle is not None and after.bundle is not None
     if changed:
-        accounted = _generated(before, after) if ours else ()
+        both = [p for p in changed if before.has_generated(p) and after.has_generated(p)]
+        accounted = both if ours else ()
         found = replace(found, files=file_differences(before.files, after.files, accounted))
     found = replace(
         found,
@@ -94,10 +96,21 @@ def compare(
     )
 
 
-def _generated(before: Model, after: Model) -> frozenset[str]:
-    """The names of files that this pne-gen prints."""
-    names = generated_names(before.name) | generated_names(after.name)
-    return names | {p for m in (before, after) if m.folder is None for p in m.files}
+def _of_the_same_targets(before: Model, after: Model) -> tuple[Model, Model]:
+    """A specification beside a folder has the targets that the folder was generated with."""
+    known = set(registry.choices())
+    if after.folder is None and known.issuperset(before.targets):
+        return before, replace(after, targets=before.targets)
+    if before.folder is None and known.issuperset(after.targets):
+        return replace(before, targets=after.targets), after
+    return before, after
+
+
+def _may_be_generated(path: str, before: Model, after: Model) -> bool:
+    return any(
+        registry.is_claimed(m.name, path) or (m.folder is None and path in m.files)
+        for m in (before, after)
+    )
 
 
 def _reason(deviations: tuple[Deviation, ...]) -> str:
@@ -152,6 +165,18 @@ def _blocks(
         yield from (BlockDifference("C", Verdict.NOT_COMPARED, note=fault) for fault in faults)
         if answers is not None:
             yield from c_blocks(*answers, terms)
+    yield from _not_run(before, after) if run else ()
+
+
+def _not_run(before: Model, after: Model) -> Iterator[BlockDifference]:
+    """Code of both versions that differs and that cannot be run here."""
+    for of in registry.TARGETS:
+        chosen = of.name in before.targets and of.name in after.targets
+        if not chosen or of.runs or of.always:
+            continue
+        if before.of_target(of.name) != after.of_target(of.name):
+            note = "its text differs, and --run does not run it"
+            yield BlockDifference(of.name, Verdict.NOT_COMPARED, note=note)
 
 
 class _SameText:
@@ -239,6 +264,8 @@ def _notes(before: Model, after: Model, *, run: bool) -> Iterator[str]:
         a, b = before.manifest.get(key), after.manifest.get(key)
         if a != b:
             yield f"{key}: {a} -> {b}"
+    if before.targets != after.targets:
+        yield f"targets: {', '.join(before.targets)} -> {', '.join(after.targets)}"
     if before.bundle is None or after.bundle is None:
         yield "equations, interface and operations are compared as the folders print them"
     for model in (before, after) if run else ():

@@ -6,21 +6,17 @@ import json
 import textwrap
 from collections.abc import Iterable, Iterator, Sequence
 
+from pne_sym.backends import registry
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.registry import BACKENDS
+from pne_sym.backends.emission import emit_target
+from pne_sym.backends.target import Syntax, Target
 from pne_sym.model.full_form import to_full_form
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.review.code import Passage, passages, program_passages
 from pne_sym.review.explain import Explanation, Related, explain, find_equation
 from pne_sym.review.plain import plain
 
-STAGES = ("spec", "derivation", "program", "c", "numpy")
-_SUFFIX = {"numpy": ".py", "c": ".c"}
 _WIDTH = 98
-
-
-class NotGeneratedError(ValueError):
-    """A stage that this version generates nothing for."""
 
 
 def spec_text(manipulator: Manipulator) -> str:
@@ -45,14 +41,16 @@ def stage_lines(
 
     Args:
         bundle: the compiled manipulator.
-        stage: one of `STAGES` but "spec"; None for the derivation and the scalar program.
+        stage: one of `registry.stages()` but "spec"; None for the derivation and the program.
         wanted: id or name of an equation; None for all.
         transitively: follow uses and users to the end.
 
     Raises:
         UnknownEquationError: there is no such equation.
-        NotGeneratedError: nothing is generated for the stage.
+        TargetError: there is no such stage.
     """
+    if stage is not None:
+        registry.check_stage(stage)
     if wanted is None:
         yield from _whole(bundle, stage)
         return
@@ -61,10 +59,11 @@ def stage_lines(
     if stage == "derivation":
         return
     equation = find_equation(bundle.derivation, wanted)
-    if stage in _SUFFIX:
-        found = passages(_file(bundle, stage), equation.id)
-    else:
+    if stage in (None, "program"):
         found = program_passages(bundle, equation.id)
+    else:
+        of = registry.target(stage)
+        found = passages(_code(bundle, of), equation.id, _syntax(of))
     if stage is None:
         yield ""
         yield "statements of the scalar program" if found else _no_statements(equation.id)
@@ -80,18 +79,26 @@ def _no_statements(equation: str) -> str:
 def _whole(bundle: Bundle, stage: str | None) -> Iterator[str]:
     if stage in (None, "derivation"):
         yield from contents(bundle)
-    elif stage in _SUFFIX:
-        yield from _file(bundle, stage).rstrip("\n").split("\n")
-    else:
+    elif stage == "program":
         yield from _passages(program_passages(bundle, None))
+    else:
+        of = registry.target(stage)
+        texts = _code(bundle, of)
+        for path, text in texts.items():
+            if len(texts) > 1:
+                yield f"{_syntax(of).comments[0]} ---- {path}"
+            yield from text.rstrip("\n").split("\n")
 
 
-def _file(bundle: Bundle, stage: str) -> str:
-    """Text of the file that a back end emits for a language."""
-    for backend in BACKENDS:
-        if backend.name == stage:
-            return backend.emit(bundle)[f"{bundle.name}{_SUFFIX[stage]}"]
-    raise NotGeneratedError(f"nothing is generated for the stage {stage!r} in this version")
+def _code(bundle: Bundle, of: Target) -> dict[str, str]:
+    """The texts of a target in which statements stand under the ids of equations."""
+    texts = sorted(emit_target(bundle, of).items())
+    return {path: text for path, text in texts if of.has_code(bundle.name, path)}
+
+
+def _syntax(of: Target) -> Syntax:
+    assert of.syntax is not None, "a target with code has a syntax"
+    return of.syntax
 
 
 def _passages(found: Sequence[Passage]) -> Iterator[str]:

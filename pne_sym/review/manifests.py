@@ -8,10 +8,10 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from pne_sym.backends.manifest import FORMAT
+from pne_sym.contents import GENERATOR
 from pne_sym.generation import InputError
 from pne_sym.model.errors import SpecError, printable
 from pne_sym.model.files import MAX_BYTES, parse
-from pne_sym.writer import GENERATOR
 
 FORMATS = tuple(range(1, FORMAT + 1))
 _LONGEST_TEXT = 2000
@@ -45,6 +45,8 @@ def read_manifest(text: str, source: str) -> dict[str, Any]:
     _check(manifest, _ENTRIES, source)
     if manifest["format"] >= 2:
         _check(manifest, _ENTRIES_OF_2, source)
+    if "targets" in manifest:
+        _check(manifest, {"targets": lambda value: _list(_is_name)(value) and bool(value)}, source)
     if fault := _contradiction(manifest):
         raise InputError(printable(f"{source} contradicts itself: {fault}"))
     return manifest

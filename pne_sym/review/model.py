@@ -11,17 +11,16 @@ from typing import Any
 
 import numpy as np
 
+from pne_sym.backends import registry
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.c_backend import CBackend
-from pne_sym.backends.manifest import ManifestBackend
-from pne_sym.backends.numpy_backend import NumpyBackend
-from pne_sym.backends.registry import BACKENDS
-from pne_sym.backends.report import ReportBackend
+from pne_sym.backends.emission import emit, emit_target
+from pne_sym.backends.target import is_signed
+from pne_sym.contents import recorded_targets
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.pipeline import compile_bundle
 from pne_sym.review.difference import Deviation
 from pne_sym.review.files import as_folder
-from pne_sym.review.folders import Folder
+from pne_sym.review.folders import Entry, Folder
 
 _LEG = re.compile(r"legs\[i\]")
 _ANCHOR = re.compile(r"\*\*\((?P<id>[\w-]+)\)\*\*\s*(?P<title>.*)")
@@ -45,6 +44,7 @@ class Model:
         written: the specification as its author wrote it, parsed, where there is one.
         folder: all files, where it comes from a folder.
         deviations: where the folder is not what this pne-gen prints.
+        targets: what code it consists of; of a folder those that its manifest names.
     """
 
     label: str
@@ -55,6 +55,7 @@ class Model:
     written: Mapping[str, Any] | None = field(default=None, repr=False)
     folder: Folder | None = field(default=None, repr=False)
     deviations: tuple[Deviation, ...] = ()
+    targets: tuple[str, ...] = field(default_factory=registry.default)
 
     @property
     def parameters(self) -> list[dict[str, Any]]:
@@ -71,30 +72,40 @@ class Model:
         """All files: of the folder, or those that would be generated."""
         if self.folder is not None:
             return self.folder
-        return as_folder(printed(self._derived))
+        return as_folder(emit(self._derived, self.targets))
+
+    def of_target(self, name: str) -> dict[str, bytes]:
+        """The files of a target: our own text wherever there is one."""
+        if self.bundle is None:
+            owner = registry.target(name)
+            return {p: text for p, text in self._of_folder.items() if owner.owns(self.name, p)}
+        return {p: text.encode() for p, text in _texts(self.bundle, name).items()}
+
+    def has_generated(self, path: str) -> bool:
+        """Whether a file is there and of a generation: a user's is not."""
+        entry = self.files.get(path)
+        if entry is None or self.folder is None:
+            return entry is not None
+        signed = is_signed(entry.content) and registry.is_claimed(self.name, path)
+        return signed or registry.is_named(self.name, path, self.targets)
 
     @property
     def python(self) -> dict[str, bytes]:
-        """The NumPy package that is run: our own text wherever there is one."""
+        """The NumPy package that is run; of a folder all its files."""
         if self.bundle is None:
             return self._of_folder
-        texts = NumpyBackend().emit(self.bundle) | {f"{self.name}.py": self.source}
-        return {name: text.encode() for name, text in texts.items()}
+        return self.of_target("numpy") | {f"{self.name}.py": self.source.encode()}
 
     @property
     def c(self) -> dict[str, bytes]:
-        """Header and source that are compiled: our own text wherever there is one."""
-        if self.bundle is None:
-            names = (f"{self.name}.h", f"{self.name}.c")
-            return {name: self._of_folder.get(name, b"") for name in names}
-        return {name: text.encode() for name, text in CBackend().emit(self.bundle).items()}
+        """Header and source that are compiled."""
+        missing = dict.fromkeys((f"{self.name}.h", f"{self.name}.c"), b"")
+        return missing | self.of_target("c")
 
     @property
     def report(self) -> str:
         """The derivation as Markdown."""
-        if self.bundle is None:
-            return self._of_folder.get(f"{self.name}.md", b"").decode(errors="replace")
-        return ReportBackend().emit(self.bundle)[f"{self.name}.md"]
+        return self.of_target("report").get(f"{self.name}.md", b"").decode(errors="replace")
 
     @property
     def _of_folder(self) -> dict[str, bytes]:
@@ -107,12 +118,8 @@ class Model:
         return self.bundle
 
 
-def printed(bundle: Bundle) -> dict[str, str]:
-    """All files of a model's folder."""
-    texts: dict[str, str] = {}
-    for backend in BACKENDS:
-        texts |= backend.emit(bundle)
-    return texts
+def _texts(bundle: Bundle, target: str) -> dict[str, str]:
+    return emit_target(bundle, registry.target(target))
 
 
 def from_manipulator(label: str, manipulator: Manipulator) -> Model:
@@ -126,14 +133,16 @@ def from_manipulator(label: str, manipulator: Manipulator) -> Model:
 
 def from_bundle(label: str, bundle: Bundle) -> Model:
     """A compiled manipulator as a version of a model."""
-    name = bundle.name
-    return Model(
-        label,
-        name,
-        json.loads(ManifestBackend().emit(bundle)[f"{name}.json"]),
-        NumpyBackend().emit(bundle)[f"{name}.py"],
-        bundle=bundle,
-    )
+    texts = {p: t for n in ("manifest", "numpy") for p, t in _texts(bundle, n).items()}
+    manifest, source = texts[f"{bundle.name}.json"], texts[f"{bundle.name}.py"]
+    return Model(label, bundle.name, json.loads(manifest), source, bundle=bundle)
+
+
+def from_folder(label: str, manifest: dict[str, Any], folder: Folder) -> Model:
+    """A generated folder as a version of a model; its manifest is checked."""
+    module = folder.get(f"{manifest['name']}.py", Entry("other")).content.decode(errors="replace")
+    targets = recorded_targets(manifest)
+    return Model(label, manifest["name"], manifest, module, folder=folder, targets=targets)
 
 
 @dataclass(frozen=True)

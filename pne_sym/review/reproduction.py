@@ -12,14 +12,16 @@ from dataclasses import replace
 from functools import cache
 
 from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.emission import emit
+from pne_sym.backends.registry import chosen
+from pne_sym.backends.target import TargetError
 from pne_sym.model.errors import SpecError, SpecWarning, printable
 from pne_sym.model.reader import from_mapping
 from pne_sym.pipeline import compile_bundle
 from pne_sym.review.difference import Deviation
 from pne_sym.review.files import as_folder, first_difference
 from pne_sym.review.folders import Folder
-from pne_sym.review.model import Model, printed
-from pne_sym.writer import generated_names
+from pne_sym.review.model import Model
 
 
 def reproduced(model: Model) -> Model:
@@ -30,28 +32,36 @@ def reproduced(model: Model) -> Model:
         reason = "its manifest, of format 1, does not hold the specification"
         return replace(model, deviations=(Deviation(model.label, "", reason),))
     try:
-        bundle, ours = _derived(json.dumps(model.manifest["specification"]))
+        bundle, ours = _derived(json.dumps(model.manifest["specification"]), chosen(model.targets))
     except SpecError as error:
         reason = printable(f"the specification in its manifest is refused: {error}", 400)
+        return replace(model, deviations=(Deviation(model.label, "", reason),))
+    except TargetError as error:
+        reason = printable(f"its targets: {error}", 400)
         return replace(model, deviations=(Deviation(model.label, "", reason),))
     deviations = tuple(_deviations(model, ours))
     return replace(model, deviations=deviations, bundle=None if deviations else bundle)
 
 
 @cache
-def _derived(specification: str) -> tuple[Bundle, Folder]:
+def _derived(specification: str, targets: tuple[str, ...]) -> tuple[Bundle, Folder]:
     """The derivation of a full form, and its files; the same on both sides is derived once."""
+    bundle = _bundle(specification)
+    return bundle, as_folder(emit(bundle, targets))
+
+
+@cache
+def _bundle(specification: str) -> Bundle:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", SpecWarning)  # told when it was generated
-        bundle = compile_bundle(from_mapping(json.loads(specification), "manifest"))
-    return bundle, as_folder(printed(bundle))
+        return compile_bundle(from_mapping(json.loads(specification), "manifest"))
 
 
 def _deviations(model: Model, ours: Folder) -> list[Deviation]:
     """Generated files that are missing, too many, or not as printed."""
     assert model.folder is not None
     found = []
-    theirs = {p: e for p, e in model.folder.items() if p in generated_names(model.name) | {*ours}}
+    theirs = {p: e for p, e in model.folder.items() if p in ours or model.has_generated(p)}
     for path in sorted({*ours, *theirs}):
         own, other = ours.get(path), theirs.get(path)
         if own == other:

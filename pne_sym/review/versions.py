@@ -8,13 +8,13 @@ from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 from pne_sym import manipulators
+from pne_sym.contents import MODEL_NAME
 from pne_sym.generation import InputError, find
 from pne_sym.model.files import MAX_BYTES, SUFFIXES, parse, read_file
 from pne_sym.model.reader import from_text
-from pne_sym.review.folders import Entry, Folder, git, read_folder, read_tree
+from pne_sym.review.folders import Folder, git, read_folder, read_tree
 from pne_sym.review.manifests import read_manifest
-from pne_sym.review.model import Model, from_manipulator
-from pne_sym.writer import MODEL_NAME
+from pne_sym.review.model import Model, from_folder, from_manipulator
 
 
 def find_version(text: str) -> Model:
@@ -81,7 +81,7 @@ def _decoded(what: str, content: bytes) -> str:
 def _folder(text: str, name: str, folder: Folder) -> Model:
     """A generated folder; its files are called by its own name, or by that of its one manifest."""
     found = [p[:-5] for p in folder if p.endswith(".json") and MODEL_NAME.fullmatch(p[:-5])]
-    if name not in found and len(found) == 1 and f"{found[0]}.py" in folder:
+    if name not in found and len(found) == 1 and f"{found[0]}.md" in folder:
         name = found[0]
     entry = folder.get(f"{name}.json")
     if entry is None or entry.kind != "file" or name not in found:
@@ -92,5 +92,4 @@ def _folder(text: str, name: str, folder: Folder) -> Model:
     manifest = read_manifest(_decoded(source, entry.content), source)
     if manifest["name"] != name:
         raise InputError(f"{source} {name}.json is of another model, {manifest['name']!r}")
-    module = folder.get(f"{name}.py", Entry("other")).content
-    return Model(text, name, manifest, module.decode(errors="replace"), folder=folder)
+    return from_folder(text, manifest, folder)

@@ -162,7 +162,9 @@ def test_progress_names_the_model_at_work(
     shown: list[str] = []
     at_work: list[tuple[str, str]] = []
 
-    def compile_many(models: list[Manipulator], jobs: int) -> Iterator[Compiled]:
+    def compile_many(
+        models: list[Manipulator], jobs: int, targets: dict[str, tuple[str, ...]]
+    ) -> Iterator[Compiled]:
         for model in models:
             at_work.append((model.name, shown[-1]))
             yield Compiled(model, {f"{model.name}.json": "{}"})
@@ -172,7 +174,7 @@ def test_progress_names_the_model_at_work(
     names = ["sixbar", "delta", "stewart"]
     models = [pne_sym.load(name) for name in names]
     arguments = (models, tmp_path) if run is _generate else (names, models, tmp_path)
-    run(*arguments, jobs=1, report=Report(quiet=True))
+    run(*arguments, jobs=1, report=Report(quiet=True), targets=("numpy", "c"))
     assert at_work == [(name, name) for name in names]
 
 

@@ -157,7 +157,7 @@ def pne_gen(*arguments: str) -> tuple[int, str, str]:
 def stub_compiler() -> Iterator[None]:
     """A compiler that writes a line, so that the front of the program is what is tested."""
     stub = types.ModuleType("pne_sym.pipeline")
-    stub.compile_model = lambda model: {f"{model.name}.py": "x = 1\n"}  # type: ignore[attr-defined]
+    stub.compile_model = lambda model, _: {f"{model.name}.py": "x = 1\n"}  # type: ignore[attr-defined]
     before = sys.modules.get("pne_sym.pipeline")
     sys.modules["pne_sym.pipeline"] = stub
     build = typer.main.get_command

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from typer.testing import CliRunner, Result
 
+from pne_sym.backends.emission import emit
 from pne_sym.cli.app import app
 from pne_sym.review.compare import compare
 from pne_sym.review.difference import Comparison
-from pne_sym.review.model import printed
 from pne_sym.review.versions import find_version
 from tests.models import bundle, catalogue
 
@@ -22,7 +22,7 @@ Edit = Callable[[str], str]
 @cache
 def texts(name: str) -> dict[str, str]:
     """What is generated for a model of the catalogue."""
-    return printed(bundle(catalogue(name)))
+    return emit(bundle(catalogue(name)))
 
 
 def write(folder: Path, name: str) -> Path:

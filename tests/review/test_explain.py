@@ -4,12 +4,20 @@ from __future__ import annotations
 
 import pytest
 
+from pne_sym.backends import registry
+from pne_sym.backends.target import Syntax
 from pne_sym.derivation import names_in
 from pne_sym.review.code import passages
 from pne_sym.review.explain import UnknownEquationError, explain, find_equation
 from tests.models import bundle, catalogue, source
 
 STEWART = catalogue("stewart")
+
+
+def syntax(target: str) -> Syntax:
+    found = registry.target(target).syntax
+    assert found is not None
+    return found
 
 
 def test_by_id_and_by_name_are_the_same() -> None:
@@ -64,7 +72,7 @@ def test_an_unknown_equation_is_refused_with_the_nearest(wanted: str, parts: lis
 
 def test_statements_in_the_numpy_code_stand_there_under_the_equation() -> None:
     wanted = find_equation(bundle(STEWART).derivation, "S").id
-    found = passages(source(STEWART), wanted)
+    found = passages({"": source(STEWART)}, wanted, syntax("numpy"))
     assert {"_M_ups", "_inverse_kinematics_ups"} <= {f for p in found for f in p.functions}
     for passage in found:
         assert {line.split(" = ")[0] for line in passage.lines} >= {"S_x", "S_y", "S_z"}
@@ -76,7 +84,7 @@ def test_statements_of_c_code() -> None:
         "    const double a = X[0];\n    const double b = a*a;\n    /* (K2) next */\n"
         "    const double c = b;\n    return 0;\n}\n"
     )
-    found = passages(text, "K1")
+    found = passages({"model.c": text}, "K1", syntax("c"))
     assert [(p.functions, p.lines) for p in found] == [
         (("model_M_ups",), ("const double a = X[0];", "const double b = a*a;"))
     ]

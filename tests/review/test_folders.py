@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 
+from pne_sym.backends.emission import emit
 from pne_sym.generation import InputError
 from pne_sym.model.full_form import to_full_form
 from pne_sym.review import folders as reading
 from pne_sym.review.folders import read_folder
 from pne_sym.review.manifests import read_manifest
-from pne_sym.review.model import printed
 from pne_sym.review.reproduction import reproduced
 from pne_sym.review.versions import find_version
 from tests.cli.test_diff import git
@@ -39,7 +39,7 @@ def test_the_manifest_holds_what_the_folder_is_printed_from(name: str, tmp_path:
     model = reproduced(find_version(str(write(tmp_path, name))))
     assert model.deviations == ()
     assert model.bundle is not None
-    assert printed(model.bundle) == texts(name)
+    assert emit(model.bundle) == texts(name)
     lines = texts(name)[f"{name}.json"].split("\n")
     assert sum(line.startswith('  {"base_point"') for line in lines) == len(
         found["specification"]["legs"]
@@ -56,7 +56,7 @@ def test_folders_of_one_specification_with_another_value_are_compared(tmp_path: 
     after.mkdir(parents=True)
     model = find_version(str(spec))
     assert model.bundle is not None
-    for name, text in printed(model.bundle).items():
+    for name, text in emit(model.bundle).items():
         (after / name).write_text(text)
     done = diff(before, after)
     assert done.exit_code == 1
@@ -232,4 +232,4 @@ def test_a_copy_of_another_name_is_found_by_its_manifest(tmp_path: Path) -> None
 
 
 def test_a_derived_model_is_the_same_as_its_folder() -> None:
-    assert printed(bundle(catalogue(MODEL))) == texts(MODEL)
+    assert emit(bundle(catalogue(MODEL))) == texts(MODEL)

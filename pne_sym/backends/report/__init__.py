@@ -15,7 +15,7 @@ from pne_sym.backends.templating import render
 class ReportBackend:
     """Emits NAME.md."""
 
-    name = "report"
+    operations = None
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""

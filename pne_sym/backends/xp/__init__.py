@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import describe, field_views
-from pne_sym.backends.templating import render
+from pne_sym.backends.templating import methods, render
 from pne_sym.backends.xp.functions import Code
-from pne_sym.backends.xp.public import public_text, steps_text
+from pne_sym.backends.xp.public import expressions, public_text, steps_text
 from pne_sym.program.ir import Closure
 
 
 class XpBackend:
     """Emits NAME_xp.py."""
 
-    name = "xp"
+    @property
+    def operations(self) -> frozenset[str]:
+        """Those that are expressions, and those that are methods of the state in templates/xp."""
+        return expressions() | methods("xp")
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""

@@ -30,6 +30,11 @@ _EXPRESSIONS = {
 """Operations that are an expression; the others are methods of the state in templates/xp."""
 
 
+def expressions() -> frozenset[str]:
+    """Names of the operations that are an expression."""
+    return frozenset(_EXPRESSIONS)
+
+
 def steps_text(program: Program, function: PublicFunction) -> str:
     """The steps as a function of the state and all inputs, which returns a tuple."""
     lines = [_step(program, step) for step in function.steps]
