@@ -6,6 +6,12 @@ Reference: inverse dynamics Eq. 3, equations of motion Eqs. 5 to 7, constraints 
 from __future__ import annotations
 
 from pne_sym.derivation import Coordinates, Derivation
+from pne_sym.lowering.public_condition import (
+    CONDITION,
+    CONDITION_CONSTRAINED,
+    moment_rows,
+    scaled_values,
+)
 from pne_sym.lowering.public_pose import pose_functions
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.ir import Program
@@ -20,7 +26,7 @@ from pne_sym.program.public import (
 
 _SIZES = {
     "X": "NQ", "X0": "NQ", "V": "NV", "A": "NV", "tau": "NU", "q": "NJ", "q0": "NJ",
-    "q_actuated": "NU", "wrench": "NW", "weights": "NU", "Z": "NV",
+    "q_actuated": "NU", "wrench": "NW", "weights": "NU", "Z": "NV", "length": "",
 }  # fmt: skip
 _MEANINGS = {
     "X": "pose, and extra coordinates",
@@ -31,9 +37,16 @@ _MEANINGS = {
     "q_actuated": "displacements of the actuated joints [m or rad]",
     "wrench": "external wrench on the platform",
     "weights": "positive weights of the actuator forces: least sum of weights tau^2",
+    "length": "by which rows of moments are divided [m]; 0: the rms distance of the platform "
+    "points from their centroid, or where they coincide the rms size of the legs",
     "q0": "first guess of the displacements",
 }
-_DEFAULTS = {"wrench": Default.ZEROS, "weights": Default.ONES, "q0": Default.HOME_Q}
+_DEFAULTS = {
+    "length": Default.ZEROS,
+    "wrench": Default.ZEROS,
+    "weights": Default.ONES,
+    "q0": Default.HOME_Q,
+}
 
 
 def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFunction, ...]:
@@ -46,9 +59,11 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
     assert coordinates is not None
     guessed = any(not t.is_closed for t in derivation.leg_types)
     writer = _Writer(coordinates, program, guessed=guessed)
+    rows = moment_rows(derivation, coordinates)
     found = (
         *writer.of_program(),
         *writer.of_dynamics(),
+        *writer.of_condition(rows),
         *writer.of_kinematics(),
         *pose_functions(coordinates),
     )
@@ -71,8 +86,9 @@ class _Writer:
     def given(self, name: str) -> Argument:
         """An input."""
         key = _SIZES[name]
-        value = Value(name, (self.n[key],))
-        return Argument(value, (key,), _MEANINGS[name], _DEFAULTS.get(name))
+        keys = (key,) if key else ()
+        value = Value(name, tuple(self.n[k] for k in keys))
+        return Argument(value, keys, _MEANINGS[name], _DEFAULTS.get(name))
 
     def made(self, value: Value, name: str, meaning: str, *dimensions: str) -> Argument:
         """An output: an array under the name that users know."""
@@ -351,6 +367,35 @@ class _Writer:
             "X",
             a,
             self.made(basis, "basis", "columns", "NU", str(basis.shape[1])),
+        )
+
+    def of_condition(self, rows: tuple[int, ...]) -> list[PublicFunction]:
+        """How far a pose is from singularities."""
+        found = [self._condition("condition", CONDITION, ["H"], rows)]
+        if self.constrained:
+            both = ["H", "Hk"]
+            found.append(
+                self._condition("condition_constrained", CONDITION_CONSTRAINED, both, rows)
+            )
+        return found
+
+    def _condition(
+        self, name: str, meaning: str, matrices: list[str], rows: tuple[int, ...]
+    ) -> PublicFunction:
+        a = Algorithm()
+        lengths, legs, *found = a.run("condition", self.program, "lengths", "pivots", *matrices)
+        sigma = scaled_values(a, found, lengths, self.given("length").value, rows)
+        size = str(sigma.shape[0])
+        return self.function(
+            name,
+            meaning,
+            "X length",
+            a,
+            self.made(sigma, "sigma", "singular values, in descending order", size),
+            self.made(legs, "legs", "least pivots; a leg is refused at 1.5e-8", str(legs.size)),
+            counted="condition",
+            also="the singular values",
+            gives_status=True,
         )
 
     # ---- searches --------------------------------------------------------------------------------

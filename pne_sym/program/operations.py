@@ -49,6 +49,8 @@ class Operation:
 
 ORTHONORMAL = 1e-6
 """By how much the products of a rotation matrix's rows may differ from those of unit vectors."""
+TINY = 1e-9
+"""A distance of points from their centroid below this fraction of the legs' size is none."""
 OPERATIONS: dict[str, Operation] = {}
 _Compute = Callable[..., tuple[Array, ...]]
 
@@ -130,6 +132,21 @@ def half_form(a: Array, b: Array) -> tuple[Array, ...]:
 def scale_columns(a: Array, b: Array) -> tuple[Array, ...]:
     """Columns of a times the entries of b."""
     return (a * b[:, None, :],)
+
+
+@_operation()
+def divide_rows(a: Array, b: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
+    """a, the numbered rows divided by the number b."""
+    result = np.array(a)
+    result[:, list(numbers)] /= b[:, None, None]
+    return (result,)
+
+
+@_operation()
+def choose_length(a: Array, b: Array) -> tuple[Array, ...]:
+    """b where it is positive; else the first entry of a, or the second if it is `TINY` of that."""
+    own = np.where(a[:, 0] > TINY * a[:, 1], a[:, 0], a[:, 1])
+    return (np.where(b > 0.0, b, own),)
 
 
 @_operation()
@@ -270,6 +287,14 @@ def resolve(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
     rows = np.swapaxes(u / size, -1, -2)
     rows[bad | ~(s[:, rank - 1] > linear.PIVOT * s[:, 0])] = np.nan
     return rows[:, :rank], rows[:, rank:]
+
+
+@_operation()
+def singular_values(a: Array) -> tuple[Array, ...]:
+    """The singular values of a, in descending order."""
+    bad = ~finite(a)
+    values = np.linalg.svd(_blanked(a, bad), compute_uv=False)
+    return (np.where(bad[:, None], np.float64(np.nan), values),)
 
 
 @_operation()

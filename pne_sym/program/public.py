@@ -129,6 +129,8 @@ class PublicFunction:
         is_exported: users call it.
         counted: function of the program whose operation counts are stated, or "".
         also: what these counts leave out.
+        gives_status: the status of every state is returned where a back end has no other place
+            for it.
     """
 
     name: str
@@ -141,6 +143,7 @@ class PublicFunction:
     is_exported: bool = True
     counted: str = ""
     also: str = ""
+    gives_status: bool = False
 
     @property
     def required(self) -> tuple[Argument, ...]:

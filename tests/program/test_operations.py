@@ -35,3 +35,11 @@ def test_rows_of_other_units_are_directions() -> None:
     assert np.isnan(resolved).all()
     (nothing, _) = OPERATIONS["resolve"]((np.zeros((1, 4, 2)),), (2,))
     assert np.isnan(nothing).all()
+
+
+def test_lengths_and_rows() -> None:
+    lengths = np.array([[2.0, 3.0], [1e-10, 3.0], [2.0, 3.0]])
+    (length,) = OPERATIONS["choose_length"]((lengths, np.array([0.0, 0.0, 5.0])), ())
+    np.testing.assert_array_equal(length, [2.0, 3.0, 5.0])
+    (divided,) = OPERATIONS["divide_rows"]((np.ones((3, 3, 2)), length), (0, 2))
+    np.testing.assert_allclose(divided[:, :, 0], [[0.5, 1, 0.5], [1 / 3, 1, 1 / 3], [0.2, 1, 0.2]])
