@@ -110,6 +110,24 @@ def module(manipulator: Manipulator) -> Any:
     return made
 
 
+def run(m: Any, function: str, shapes: Any, *vectors: Any) -> list[Any]:
+    """Arrays (states, *shape) of a function of the program in a NumPy module, at (states, n)."""
+    states = [np.moveaxis(v, 0, -1) for v in vectors]
+    with np.errstate(all="ignore"):
+        mode = m._mode(m._DEFAULT, len(vectors[0]))
+        found = mode.run(getattr(m, f"_run_{function}"), shapes, *states)
+    return [np.moveaxis(a, -1, 0) for a in found]
+
+
+def closed(m: Any, X: Any, q: Any) -> Any:
+    """Displacements (..., NJ) that close the loops at X in a NumPy module, iterated from q."""
+    X, q = (np.broadcast_to(v, (*np.shape(X)[:-1], v.shape[-1])) for v in (X, q))
+    columns = [v.reshape(-1, v.shape[-1]).T for v in (X, q)]
+    with np.errstate(all="ignore"):
+        found = m._closed(m._mode(m._DEFAULT, columns[0].shape[1]), *columns)
+    return found.T.reshape(q.shape)
+
+
 @cache
 def manifest(manipulator: Manipulator) -> dict[str, Any]:
     """The manifest, as a program would read it."""

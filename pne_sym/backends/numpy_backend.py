@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pne_sym.backends.bundle import Bundle
-from pne_sym.backends.describe import (
-    Described,
-    FieldView,
-    describe,
-    field_views,
-    moment_rows,
-)
-from pne_sym.backends.numpy_parts import Parts
+from pne_sym.backends.describe import Described, FieldView, describe, field_views
+from pne_sym.backends.numpy_functions import FunctionText
+from pne_sym.backends.numpy_public import public_text, steps_text
+from pne_sym.backends.numpy_support import needed
 from pne_sym.backends.numpy_text import PythonText
 from pne_sym.backends.templating import render
-from pne_sym.derivation import AxisRelation, LegTypeInfo
+from pne_sym.derivation import AxisRelation
+from pne_sym.program import interpret, iteration, linear, operations
 from pne_sym.program.ir import Closure
 from pne_sym.program.slices import symbols
+
+_SUPPORT = ("modes", "operations", "linear", "iteration", "rotations")
+"""Templates of plain Python, of which a module gets what it needs."""
 
 
 @dataclass(frozen=True)
@@ -26,21 +27,20 @@ class ModuleView:
     """Ready strings for the module's template."""
 
     described: Described
+    exported: tuple[str, ...]
     fields: tuple[FieldView, ...]
     relations: tuple[AxisRelation, ...]
     defaults: tuple[str, ...]
-    legs: tuple[LegTypeInfo, ...]
     driven_joints: tuple[int, ...]
-    turning_drives: tuple[int, ...]
-    actuator_legs: tuple[int, ...]
-    moment_rows: tuple[int, ...]
-    closures: tuple[Closure, ...]
-    extra_joints: tuple[int, ...]
-    turning_joints: tuple[bool, ...]
+    quaternion: int | None
+    given: tuple[tuple[int, int], ...]
+    closures: tuple[str, ...]
     branches: tuple[str, ...]
     prepare: str
+    support: str
     functions: tuple[str, ...]
-    plans: tuple[str, ...]
+    steps: tuple[str, ...]
+    public: tuple[str, ...]
 
 
 class NumpyBackend:
@@ -58,28 +58,74 @@ class NumpyBackend:
 
     def view(self, bundle: Bundle) -> ModuleView:
         """What the template prints."""
-        text = PythonText(bundle)
-        parts = [Parts(text, bundle, f) for f in bundle.program.functions.values()]
-        fields, c = field_views(bundle), bundle.coordinates
-        driven = tuple(c.joints.index(a) for a in c.actuators)
+        program, c = bundle.program, bundle.coordinates
+        functions = _functions(bundle)
+        texts = tuple(f.text() for f in functions)
+        steps = tuple(steps_text(program, f) for f in program.public)
+        public = tuple(public_text(f) for f in program.public if f.is_exported)
+        parts = (render(f"numpy/{name}.py.jinja", **_NUMBERS) for name in _SUPPORT)
+        fields = field_views(bundle)
         return ModuleView(
             describe(bundle),
+            _exported(bundle),
             fields,
             tuple(bundle.derivation.parameters.relations),
             tuple(line for f in fields for line in _default_lines(f)),
-            bundle.derivation.leg_types,
-            driven,
-            tuple(k for k, j in enumerate(driven) if c.turning[j]),
-            tuple(leg for leg, _ in c.actuators),
-            moment_rows(bundle),
-            bundle.program.closures,
-            tuple(joint for joint, _ in bundle.program.given),
-            c.turning,
+            tuple(c.joints.index(a) for a in c.actuators),
+            sum(name in "xyz" for name in c.pose) if c.has_quaternion else None,
+            program.given,
+            tuple(_closure(bundle, closure) for closure in program.closures),
             _branches(bundle),
-            _prepare(bundle, text),
-            tuple(part.text() for part in parts),
-            tuple(part.plan() for part in parts),
+            _prepare(bundle, functions),
+            needed("\n".join(parts), (*texts, *steps, *public)),
+            texts,
+            steps,
+            public,
         )
+
+
+_NUMBERS = {
+    "SEARCH_STEPS": interpret.SEARCH_STEPS,
+    "HALVINGS": interpret.HALVINGS,
+    "FOUND": interpret.FOUND,
+    "CLOSE": interpret.CLOSE,
+    "STEPS": iteration.STEPS,
+    "LONGEST": iteration.LONGEST,
+    "STEADY": iteration.STEADY,
+    "PIVOT": linear.PIVOT,
+    "TINY": operations.TINY,
+}
+"""What the definitions of operations and iterations fix."""
+
+
+def _functions(bundle: Bundle) -> tuple[FunctionText, ...]:
+    """Functions of the program that steps and iterations run."""
+    program = bundle.program
+    judged = {n for f in program.public if f.gives_status for n in f.functions}
+    run = {n for f in program.public for n in f.functions}
+    run |= {f"closure_{closure.leg_type}" for closure in program.closures}
+    return tuple(
+        FunctionText(bundle, f, judged=f.name in judged)
+        for f in program.functions.values()
+        if f.name in run
+    )
+
+
+def _exported(bundle: Bundle) -> tuple[str, ...]:
+    """Sizes, then the rest by name."""
+    names = [f.name for f in bundle.program.public if f.is_exported]
+    return (*bundle.coordinates.sizes, *sorted(("HOME_Q", "HOME_X", "Parameters", *names)))
+
+
+def _closure(bundle: Bundle, closure: Closure) -> str:
+    """A row of the table of closures."""
+    shapes = bundle.program.shapes
+    name, function = closure.leg_type, bundle.program.functions[f"closure_{closure.leg_type}"]
+    arrays = tuple(shapes[a] for a in function.arrays)
+    joints = f"np.array({[list(leg) for leg in closure.joints]})"
+    signs = f'_BRANCHES["{closure.sign_name}"]' if closure.rows else "()"
+    facts = f"{function.inputs}, {arrays}, {joints}, {list(closure.turning)}"
+    return f"(_run_closure_{name}, {facts}, {list(closure.rows)}, {signs})"
 
 
 def _default_lines(f: FieldView) -> list[str]:
@@ -97,9 +143,9 @@ def _branches(bundle: Bundle) -> tuple[str, ...]:
     )
 
 
-def _prepare(bundle: Bundle, text: PythonText) -> str:
+def _prepare(bundle: Bundle, functions: Sequence[FunctionText]) -> str:
     """Body of the function that computes the prepared values."""
-    program = bundle.program
+    program, text = bundle.program, PythonText(bundle)
     formulas = [text.of(a.expr) for block in program.prepare for a in block.assignments]
     lines = ["sqrt = np.sqrt"]
     # Angles can be fixed by the parameters alone: of a leg that keeps a locked orientation.
@@ -108,15 +154,14 @@ def _prepare(bundle: Bundle, text: PythonText) -> str:
         for name, of_numpy in (("sin", "sin"), ("cos", "cos"), ("atan2", "arctan2"))
         if any(f"{name}(" in formula for formula in formulas)
     ]
-    # named, so that one more leg does not change every line that runs over the legs
-    lines += [f'_{t} = (len(_LEGS["{t}"]),)' for t in bundle.leg_counts]
     lines += _parameters_read(bundle)
     for block in program.prepare:
         lines += text.statements(block.assignments)
         for target, value in block.sums:
-            legs = f"_{block.leg_type}"
+            legs = bundle.leg_counts[block.leg_type]
             lines.append(f"{target} = np.sum(np.broadcast_to({text.of(value)}, {legs}))")
-    lines += _prepared(bundle)
+    listed = [line for function in functions for line in function.constants()]
+    lines += ["return {", *(f"    {line}" for line in listed), "}"]
     return textwrap.indent("\n".join(lines), "    ")
 
 
@@ -131,22 +176,6 @@ def _parameters_read(bundle: Bundle) -> list[str]:
         if name in used
     ]
     return entries + [f'{name} = _BRANCHES["{name}"]' for name in table.branches if name in used]
-
-
-def _prepared(bundle: Bundle) -> list[str]:
-    """The prepared values as what is returned: shared ones, and those of the legs by type."""
-    prepared = bundle.program.prepared
-    lines = ["shared = {", *(f'    "{n}": float({n}),' for n, leg in prepared if not leg)]
-    lines += ["}", "legs = {"]
-    for leg_type in bundle.leg_counts:
-        lines.append(f'    "{leg_type}": {{')
-        lines += [
-            f'        "{n}": np.broadcast_to({n}, _{leg_type}),'
-            for n, leg in prepared
-            if leg == leg_type
-        ]
-        lines.append("    },")
-    return [*lines, "}", "return shared, legs"]
 
 
 def _subscript(shape: tuple[int, ...], index: int, *, per_leg: bool) -> str:

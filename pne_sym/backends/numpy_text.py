@@ -15,9 +15,10 @@ WIDTH = 98
 
 
 class PythonText:
-    """Writes the lines of function bodies."""
+    """Writes the lines of function bodies, for places that are indented so far."""
 
-    def __init__(self, bundle: Bundle) -> None:
+    def __init__(self, bundle: Bundle, indent: int = 4) -> None:
+        self.width = WIDTH - indent
         self.printer = ScalarPrinter(PYTHON)
         self.titles = equation_titles(bundle.derivation)
 
@@ -40,40 +41,21 @@ class PythonText:
     def assign(self, target: str, value: str) -> list[str]:
         """An assignment, on several lines if it is long."""
         line = f"{target} = {value}"
-        if len(line) <= WIDTH - 4:
+        if len(line) <= self.width:
             return [line]
-        return [f"{target} = (", *wrap(f"    {value}", WIDTH - 4, "    "), ")"]
+        return [f"{target} = (", *wrap(f"    {value}", self.width, "    "), ")"]
 
     def names(self, names: list[str], source: str) -> list[str]:
         """Unpack a tuple; nothing for an empty one."""
-        if not names:
-            return []
-        line = (
-            f"{', '.join(names)}, = {source}"
-            if len(names) == 1
-            else f"{', '.join(names)} = {source}"
-        )
-        if len(line) <= WIDTH - 4:
-            return [line]
-        return ["(", *wrap("    " + ", ".join(names) + ",", WIDTH - 4, "    "), f") = {source}"]
+        return unpacked(names, source, self.width)
 
-    def returns(self, values: list[str]) -> list[str]:
-        """Return a tuple."""
-        if not values:
-            return ["return ()"]
-        line = f"return ({', '.join(values)},)"
-        if len(line) <= WIDTH - 4:
-            return [line]
-        return ["return (", *wrap("    " + ", ".join(values) + ",", WIDTH - 4, "    "), ")"]
 
-    def checks(self, block_checks: Any) -> str:
-        """One truth value of all guards of a block."""
-        parts = []
-        for check in block_checks:
-            value = self.of(check.value)
-            if check.trouble == "unreachable":
-                parts.append(f"({value} >= 0.0)")
-                continue
-            tolerance = "_TOLERANCE * _TOLERANCE" if check.power == 2 else "_TOLERANCE"
-            parts.append(f"(abs({value}) > {tolerance} * {self.of(check.scale)})")
-        return " & ".join(dict.fromkeys(parts)) or "True"
+def unpacked(names: list[str], source: str, width: int) -> list[str]:
+    """A tuple unpacked; nothing for an empty one."""
+    if not names:
+        return []
+    line = f"{', '.join(names)}{',' if len(names) == 1 else ''} = {source}"
+    if len(line) <= width:
+        return [line]
+    lines = ["(", *wrap("    " + ", ".join(names) + ",", width, "    ")]
+    return [*lines, *wrap(f") = {source}", width, "    ")]

@@ -13,7 +13,7 @@ from pne_sym.backends.target import Syntax, Target, TargetError
 _PYTHON = Syntax(
     comments=("#",),
     function=r"def (\w+)\(",
-    ends=r"(?:ok|return|shared|def|for|if)\b|[{}]",
+    ends=r"(?:ok|valid|reached|clear|sums|return|shared|def|for|if)\b|out_|[{}]",
 )
 _ARRAYS = Syntax(
     comments=("#",),

@@ -88,7 +88,8 @@ class _Writer:
         key = _SIZES[name]
         keys = (key,) if key else ()
         value = Value(name, tuple(self.n[k] for k in keys))
-        return Argument(value, keys, _MEANINGS[name], _DEFAULTS.get(name))
+        positive = name in ("weights", "length")
+        return Argument(value, keys, _MEANINGS[name], _DEFAULTS.get(name), positive)
 
     def made(self, value: Value, name: str, meaning: str, *dimensions: str) -> Argument:
         """An output: an array under the name that users know."""

@@ -49,12 +49,14 @@ class Argument:
         dimensions: names of the sizes in the shape, such as ("NV", "NU"), or digits.
         meaning: in words, with the unit where there is one.
         default: what stands for it where it is not given; None where it is required.
+        positive: where it is given, its entries must be positive and finite, whatever the state.
     """
 
     value: Value
     dimensions: tuple[str, ...]
     meaning: str
     default: Default | None = None
+    positive: bool = False
 
     @property
     def name(self) -> str:
@@ -122,6 +124,7 @@ class PublicFunction:
     Attributes:
         name: of the function.
         meaning: a sentence for docstrings and headers.
+        notes: what else must be known of it, in paragraphs.
         inputs, outputs: arguments in order; optional inputs last.
         steps: in order.
         group: what it is about: "dynamics", "kinematics", "constraints", "pose" ...
@@ -144,6 +147,7 @@ class PublicFunction:
     counted: str = ""
     also: str = ""
     gives_status: bool = False
+    notes: tuple[str, ...] = ()
 
     @property
     def required(self) -> tuple[Argument, ...]:

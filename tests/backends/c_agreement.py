@@ -46,7 +46,8 @@ def _pose(module: Any, X: Array) -> dict[str, Array]:
     if not hasattr(module, "rotation"):
         return {}
     R = module.rotation(X)
-    return {"R": R, "t": X[:, : getattr(module, "_Q", 2)]}
+    position = {6: 3, 3: 0 if module.NQ > module.NV else 2}[module.NW]
+    return {"R": R, "t": X[:, :position]}
 
 
 def from_numpy(module: Any, name: str, given: Mapping[str, Array], p: Any) -> list[Array]:

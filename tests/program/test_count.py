@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import re
+import ast
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +10,7 @@ import pytest
 import sympy as sp
 
 from pne_sym.program.count import count_expression, count_function
-from pne_sym.program.ir import Counts
+from pne_sym.program.ir import Counts, Function
 from tests.models import bundle, catalogue, manifest, source
 from tests.whole.supported import SAMPLE
 
@@ -63,71 +63,77 @@ class Number:
         return self
 
 
-class Functions:
-    """What the generated code calls."""
+class Mode:
+    """What the generated code runs in: it goes over the legs one after another."""
 
-    def __init__(self, tally: Tally) -> None:
+    def __init__(self, tally: Tally, shared: int, loops: list[tuple[int, int]]) -> None:
+        self.tally, self.shared, self.loops = tally, shared, loops
         self.sqrt = lambda x: x._after("sqrt")
         self.sin = self.cos = lambda x: x._after("trig")
         self.atan2 = lambda y, x: Number(tally)._after("trig")
         self.least = lambda x, y: Number(tally)._after("add")
 
+    def zeros(self, size: int) -> list[Any]:
+        return [None] * size
 
-_TEXT = re.compile(r"^def (_\w+)\((.*)\):\n((?:    .*\n|\n)+)", re.MULTILINE)
-_UNPACK = re.compile(
-    r"    # [XVA]: named entries\n(?:    [^#\n].*\n)*?(?=    #|    ok = |    return)"
-)
-
-
-def straight_line_code(text: str, name: str) -> dict[str, str]:
-    """The functions of one computation, without guards and without the naming of inputs."""
-    found = {}
-    for match in _TEXT.finditer(text):
-        if re.fullmatch(rf"_{name}_\w+", match.group(1)):
-            body = re.sub(r"^    ok = .*$", "    ok = True", match.group(3), flags=re.MULTILINE)
-            body = _UNPACK.sub("", body)
-            found[match.group(1)] = f"def {match.group(1)}({match.group(2)}):\n{body}"
-    return found
-
-
-def defined(code: str, tally: Tally) -> Any:
-    """One function, with the names that the cut-out naming of inputs would have made."""
-    scope: dict[str, Any] = {
-        f"{stem}_{a}": Number(tally)
-        for stem in ("t", "t_dot", "t_ddot", "omega", "alpha")
-        for a in "xyz"
-    }
-    scope |= {f"R_{a}{b}": Number(tally) for a in "xyz" for b in "xyz"}
-    exec(code, scope)
-    return scope[code[len("def ") : code.index("(")]]
-
-
-def unpacked(code: str, argument: str) -> int:
-    """How many values a function unpacks from one of its arguments."""
-    names = re.search(rf"^    (?:\(\n)?([^()=]*?),?\s*\)? = {argument}$", code, re.MULTILINE)
-    return len(names.group(1).split(",")) if names else 0
-
-
-def measured(text: str, name: str, legs: dict[str, int]) -> Tally:
-    """Operations of a computation, by running its code."""
-    total = Tally()
-    for function, code in straight_line_code(text, name).items():
-        tally = Tally()
-        signature = code[code.index("(") + 1 : code.index(")")].split(", ")
-        arguments: list[Any] = [
-            [Number(tally)] * unpacked(code, a) if a != "f" else Functions(tally) for a in signature
+    def constants(self, name: str) -> Any:
+        """Shared values, and values of every leg of each loop."""
+        assert name
+        return self._numbers(self.shared), [
+            [(leg, self._numbers(size)) for leg in range(count)] for count, size in self.loops
         ]
-        for k, a in enumerate(signature):
-            if a in ("X", "V", "A"):
-                arguments[k] = [Number(tally)] * 50
-        result = defined(code, tally)(*arguments)
-        times = legs.get(function.removeprefix(f"_{name}_"), 1)
-        sums = len(result[1]) if function.removeprefix(f"_{name}_") in legs else 0
-        assert not tally.powers
-        for operation in ("mul", "add", "div", "sqrt", "trig"):
-            done = getattr(tally, operation) + (sums if operation == "add" else 0)
-            setattr(total, operation, getattr(total, operation) + times * done)
-    return total
+
+    def added(self, sums: list[Any], leg: int, terms: tuple[Any, ...]) -> list[Number]:
+        """Sums over the legs so far."""
+        assert leg >= 0
+        assert len(sums) == len(terms)
+        self.tally.add += len(terms)
+        return self._numbers(len(terms))
+
+    def _numbers(self, size: int) -> list[Number]:
+        return [Number(self.tally)] * size
+
+
+_FLAGS = ("ok", "valid", "reached", "clear")
+
+
+class Stripped(ast.NodeTransformer):
+    """Code without guards, and without the naming of inputs, which are counted apart."""
+
+    def __init__(self, named: set[str]) -> None:
+        self.dropped = {*named, *_FLAGS}
+
+    def visit_Assign(self, node: ast.Assign) -> ast.Assign | None:
+        (target,) = node.targets
+        return None if isinstance(target, ast.Name) and target.id in self.dropped else node
+
+
+def unpacked(code: ast.AST, argument: str) -> list[int]:
+    """How many values are unpacked from a name, wherever that is done."""
+    return [
+        len(node.targets[0].elts)
+        for node in ast.walk(code)
+        if isinstance(node, ast.Assign)
+        and isinstance(node.value, ast.Name)
+        and node.value.id == argument
+        and isinstance(node.targets[0], ast.Tuple)
+    ]
+
+
+def measured(text: str, function: Function, legs: dict[str, int]) -> Tally:
+    """Operations of a computation, by running its code."""
+    name, tally = f"_run_{function.name}", Tally()
+    named = {str(a.target) for a in function.unpack}
+    (code,) = (n for n in ast.parse(text).body if isinstance(n, ast.FunctionDef) and n.name == name)
+    stripped = ast.fix_missing_locations(ast.Module([Stripped(named).visit(code)], []))
+    scope: dict[str, Any] = {n: Number(tally) for n in named} | dict.fromkeys(_FLAGS, True)
+    exec(compile(stripped, name, "exec"), scope)
+    counts = [legs[block.leg_type] for block in function.blocks if block.leg_type]
+    loops = list(zip(counts, unpacked(code, "k"), strict=True))
+    mode = Mode(tally, sum(unpacked(code, "shared")), loops)
+    scope[name](mode, *([Number(tally)] * 50 for _ in function.inputs))
+    assert not tally.powers
+    return tally
 
 
 @pytest.mark.parametrize("name", SAMPLE)
@@ -137,7 +143,7 @@ def test_counts_are_those_of_the_code(name: str) -> None:
     for function in compiled.program.functions.values():
         counted = count_function(function, compiled.leg_counts)
         assert counted.total > 0
-        assert measured(text, function.name, compiled.leg_counts).counts() == counted, function.name
+        assert measured(text, function, compiled.leg_counts).counts() == counted, function.name
         stated = manifest(manipulator)["operations"][function.name]
         assert Counts(*(stated[k] for k in ("mul", "add", "div", "sqrt", "trig"))) == counted
         comment = (

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from pne_sym.backends.numpy_parts import PLAN_NAMES
 from pne_sym.model.manipulator import Manipulator
 from pne_sym.program.evaluate import Status, evaluate, prepare, value_of
 from pne_sym.program.iteration import close_loops
@@ -58,10 +57,14 @@ def prepared(name: str) -> dict[str, Array]:
 
 
 def of_module(name: str, function: str, vectors: dict[str, Array]) -> list[Array]:
-    m = models.module(model_of(name))
-    plan = getattr(m, "_" + PLAN_NAMES.get(function, function.upper()))
-    found: list[Array] = m._run(plan, m._DEFAULT, *(vectors[v] for v in plan.inputs))
-    return found
+    m, program = models.module(model_of(name)), models.bundle(model_of(name)).program
+    of_program = program.functions[function]
+    shapes = [program.shapes[a] for a in of_program.arrays]
+    if function == "condition":  # it is judged: values are there in impossible states too
+        given = [vectors[v].T for v in of_program.inputs]
+        mode = m._Judged(m._DEFAULT, given[0].shape[1])
+        return [np.moveaxis(a, -1, 0) for a in mode.run(m._run_condition, shapes, *given)]
+    return models.run(m, function, shapes, *(vectors[v] for v in of_program.inputs))
 
 
 @pytest.mark.parametrize("name", [*ENTRIES, *DRAWN])
@@ -88,8 +91,7 @@ def test_closures_are_the_module_s(name: str) -> None:
     program, values = models.bundle(manipulator).program, prepared(name)
     found, converged = close_loops(program, values, vectors["X"], vectors["q"])
     m = models.module(manipulator)
-    with np.errstate(all="ignore"):
-        wanted = m._closed(vectors["X"], vectors["q"], m._DEFAULT)
+    wanted = models.closed(m, vectors["X"], vectors["q"])
     iterated = [j for closure in program.closures for j in closure.places]
     np.testing.assert_array_equal(converged, np.isfinite(wanted).all(axis=1))
     assert converged.sum() == STATES - 3

@@ -73,7 +73,7 @@ def test_an_unknown_equation_is_refused_with_the_nearest(wanted: str, parts: lis
 def test_statements_in_the_numpy_code_stand_there_under_the_equation() -> None:
     wanted = find_equation(bundle(STEWART).derivation, "S").id
     found = passages({"": source(STEWART)}, wanted, syntax("numpy"))
-    assert {"_M_ups", "_inverse_kinematics_ups"} <= {f for p in found for f in p.functions}
+    assert {"_run_M", "_run_inverse_kinematics"} <= {f for p in found for f in p.functions}
     for passage in found:
         assert {line.split(" = ")[0] for line in passage.lines} >= {"S_x", "S_y", "S_z"}
 

@@ -31,16 +31,16 @@ def appended(code: str) -> Edit:
 NAMED: dict[str, tuple[str, Edit]] = {
     "the wrench's sign": (
         "planar_3rpr.py",
-        substituted(r"(def inverse_dynamics\((?:.*\n)*?.*required) - external", r"\1 + external"),
+        substituted(r"required_of_required - (\w+)", r"required_of_required + \1"),
     ),
     "another rotation": (
         "planar_3rpr.py",
-        substituted(r'(def rotation\(X\):\n    """.*"""\n)', r"\1    return 7\n"),
+        substituted(r"(def rotation\(X\):\n)", r"\1    return 7\n"),
     ),
     "a tolerance": ("planar_3rpr.py", substituted(r"_TOLERANCE = \S+", "_TOLERANCE = 1e-30")),
     "the wrench's moments": (
         "planar_3rpr.py",
-        substituted(r"(def _external\(.*\n(?:.*\n)*?    )return np", r"\1return 1.5 * np"),
+        substituted(r"(def _steps_forward_dynamics\((?:.*\n)*?    extend_\d = )w", r"\g<1>1.5 * w"),
     ),
     "code at import": ("planar_3rpr.py", appended("\nimport os\nos.umask(0o777)\n")),
     "M for others than the runner": (

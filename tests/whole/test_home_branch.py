@@ -53,12 +53,11 @@ def path_from_home(name: str, seed: int, reach: float) -> Array:
 
 def followed(name: str, path: Array) -> Array:
     """Displacements (PATH, NJ) along a path, each from the last; closed ones stay at home's."""
-    spec = model_of(name)
-    m, q, found = models.module(spec), np.array(spec.home.q), []
-    with np.errstate(all="ignore"):
-        for X in path:
-            q = m._closed(X, q, m._DEFAULT)
-            found.append(q)
+    m = models.module(model_of(name))
+    q, found = m.HOME_Q, []
+    for X in path:
+        q = models.closed(m, X, q)
+        found.append(q)
     return np.array(found)
 
 

@@ -1,0 +1,164 @@
+"""Functions of a program in NumPy: straight-line code for a state in floats, or for many in arrays.
+
+The code runs in a mode m: `Floats` go over the legs one after another, `Arrays` have them as the
+first dimension of what belongs to a leg, and go over them once.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Iterable, Sequence
+from math import prod
+from typing import Any
+
+from pne_sym.backends.bundle import Bundle
+from pne_sym.backends.numpy_text import WIDTH, PythonText
+from pne_sym.backends.scalar import wrap
+from pne_sym.program.count import count_function
+from pne_sym.program.ir import Block, Check, Function
+from pne_sym.program.slices import columns, flat_places, slices, symbols
+
+SIZES = {"X": "NQ", "V": "NV", "A": "NV", "q": "NJ"}
+_MATH = ("sqrt", "sin", "cos", "atan2", "least")
+_VERDICTS = {"invalid": "valid", "unreachable": "reached", "singular": "clear"}
+
+
+class FunctionText:
+    """Writes a function of a program.
+
+    Args:
+        bundle: of the model.
+        function: what is written.
+        judged: it tells why a state is impossible, not only whether.
+    """
+
+    def __init__(self, bundle: Bundle, function: Function, *, judged: bool) -> None:
+        self.bundle, self.f, self.judged = bundle, function, judged
+        self.outside, self.inside = PythonText(bundle), PythonText(bundle, indent=8)
+
+    def text(self) -> str:
+        """The function, headed by its operation counts."""
+        name, counts = self.f.name, count_function(self.f, self.bundle.leg_counts)
+        body = self._inputs() + self.outside.statements(self.f.unpack)
+        body += [f"{flag} = True" for flag in self._flags()]
+        body += self._required(self.f.unpack_checks, "{}")
+        body += [f"out_{array} = m.zeros({self._size(array)})" for array in self.f.arrays]
+        loops = [block for block in self.f.blocks if block.leg_type]
+        for block in self.f.blocks:
+            body += self._loop(block, loops.index(block)) if block.leg_type else self._once(block)
+        used = " ".join(body)
+        math = [f"{n} = m.{n}" for n in _MATH if f"{n}(" in used]
+        body = math + body + [f"return {self._verdict()}, {self._tuple(self._outputs())}"]
+        return (
+            f"# {name}: {counts.mul} mul, {counts.add} add, {counts.div} div, "
+            f"{counts.sqrt} sqrt, {counts.trig} trig\n"
+            f"def _run_{name}({', '.join(('m', *self.f.inputs))}):\n"
+            + textwrap.indent("\n".join(body), "    ")
+        )
+
+    def constants(self) -> list[str]:
+        """The prepared values that it reads: shared ones, and those of the legs of each loop."""
+        lines = [f'"{self.f.name}": (', *self._listed(self._shared()), "    ("]
+        for block in (b for b in self.f.blocks if b.leg_type):
+            values = self._listed(self.f.per_leg.get(block.leg_type, ()), "    ")
+            lines += [f"        ({self.bundle.leg_counts[block.leg_type]},", *values, "        ),"]
+        return [*lines, "    ),", "),"]
+
+    def _listed(self, names: Sequence[str], indent: str = "") -> list[str]:
+        inner = "    " + indent
+        return wrap(f"{inner}({self._tuple(names)[1:-1]}),", WIDTH - 8, f"{inner}    ")
+
+    # ---- parts -------------------------------------------------------------------------------
+
+    def _shared(self) -> list[str]:
+        read = set[str]().union(*map(symbols, self.f.blocks)) | slices(self.f).reads_before
+        return [name for name in self.f.shared if name in read]
+
+    def _inputs(self) -> list[str]:
+        """Names for prepared values, and for the entries of the input vectors that are read."""
+        lines = []
+        if self._shared() or any(b.leg_type for b in self.f.blocks):
+            lines.append(f'shared, legs = m.constants("{self.f.name}")')
+        lines += self.outside.names(self._shared(), "shared")
+        read = set[str]().union(*map(symbols, self.f.blocks)) | slices(self.f).reads_before
+        for vector in self.f.inputs:
+            size = self.bundle.coordinates.sizes[SIZES[vector]]
+            lines += [
+                f"{vector}_{k} = {vector}[{k}]" for k in range(size) if f"{vector}_{k}" in read
+            ]
+        return lines
+
+    def _once(self, block: Block) -> list[str]:
+        lines = self.outside.statements(block.assignments) + self._required(block.checks, "{}")
+        for store in block.stores:
+            (place,) = flat_places(store, self._columns(store.array))
+            lines += self.outside.assign(f"out_{store.array}[{place}]", self._of(store.value))
+        return lines
+
+    def _loop(self, block: Block, number: int) -> list[str]:
+        """Statements of the legs of a type."""
+        leg, text = block.leg_type, self.inside
+        constants = list(self.f.per_leg.get(leg, ()))
+        lines = text.names(constants, "k")
+        for entry in self.f.leg_inputs.get(leg, ()):
+            lines.append(f"{entry.symbol} = {entry.vector}[{list(entry.indices)}[leg]]")
+        lines += text.statements(block.assignments)
+        lines += self._required(block.checks, "m.every({})")
+        if block.sums:
+            values = [self._of(value) for _, value in block.sums]
+            lines.append("sums = m.added(sums, leg, (")
+            lines += [*wrap("    " + self._tuple(values)[1:-1], WIDTH - 12, "    "), "))"]
+        for store in block.stores:
+            places = flat_places(store, self._columns(store.array), self.bundle.leg_counts[leg])
+            target = f"out_{store.array}[{list(places)}[leg]]"
+            lines += text.assign(target, self._of(store.value))
+        head = [f"sums = [0.0] * {len(block.sums)}"] if block.sums else []
+        head.append(f"for leg, k in legs[{number}]:")
+        targets = self.outside.names([str(target) for target, _ in block.sums], "sums")
+        return [*head, *textwrap.indent("\n".join(lines), "    ").split("\n"), *targets]
+
+    # ---- guards ------------------------------------------------------------------------------
+
+    def _flags(self) -> list[str]:
+        return list(_VERDICTS.values()) if self.judged else ["ok"]
+
+    def _verdict(self) -> str:
+        return f"({', '.join(self._flags())})" if self.judged else "ok"
+
+    def _required(self, checks: Iterable[Check], form: str) -> list[str]:
+        """What guards demand."""
+        demands: dict[str, list[str]] = {}
+        for check in checks:
+            flag = _VERDICTS[check.trouble] if self.judged else "ok"
+            demands.setdefault(flag, []).append(self._demand(check))
+        lines = []
+        for flag, parts in demands.items():
+            value = form.format(" & ".join(dict.fromkeys(parts)))
+            lines += self.inside.assign(flag, f"{flag} & {value}")
+        return lines
+
+    def _demand(self, check: Check) -> str:
+        value = self._of(check.value)
+        if check.trouble == "unreachable":
+            return f"({value} >= 0.0)"
+        if check.trouble == "invalid":
+            return f"({value} > 0.0) & ({value} < np.inf)"
+        tolerance = "_TOLERANCE * _TOLERANCE" if check.power == 2 else "_TOLERANCE"
+        return f"(abs({value}) > {tolerance} * {self._of(check.scale)})"
+
+    # ---- texts -------------------------------------------------------------------------------
+
+    def _of(self, value: Any) -> str:
+        return self.outside.of(value)
+
+    def _tuple(self, values: Sequence[str]) -> str:
+        return f"({', '.join(values)}{',' if values else ''})"
+
+    def _outputs(self) -> list[str]:
+        return [f"out_{array}" for array in self.f.arrays]
+
+    def _columns(self, array: str) -> int:
+        return columns(self.bundle.program.shapes[array])
+
+    def _size(self, array: str) -> int:
+        return prod(self.bundle.program.shapes[array])

@@ -1,0 +1,181 @@
+"""Public functions in NumPy: the steps as they stand, and the functions that users call."""
+
+from __future__ import annotations
+
+import textwrap
+
+from pne_sym.backends.numpy_text import WIDTH, unpacked
+from pne_sym.backends.scalar import wrap
+from pne_sym.program.ir import Program
+from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Step
+
+_EXPRESSIONS = {
+    "add": "{0} + {1}",
+    "subtract": "{0} - {1}",
+    "same": "{0}",
+    "negative": "-{0}",
+    "multiply": "{0} * {1}",
+    "entry": "{0}[{n}]",
+    "impossible": "_impossible({n}, m.states)",
+    "times": 'np.einsum("ijs,js->is", {0}, {1})',
+    "product": 'np.einsum("iks,kjs->ijs", {0}, {1})',
+    "transposed": "np.swapaxes({0}, 0, 1)",
+    "half_form": '0.5 * np.einsum("is,is->s", {0}, np.einsum("ijs,js->is", {1}, {0}))',
+    "scale_columns": "{0} * {1}",
+    "inverse_root": "1.0 / np.sqrt({0})",
+    "extend": "_extended({0}, {n})",
+    "take": "{0}[{places}]",
+    "take_columns": "{0}[:, {places}]",
+    "add_at": "_added_at({0}, {1}, {numbers})",
+    "clear_at": "_cleared_at({0}, {numbers})",
+    "beside": "np.concatenate(({0}, {1}), axis=1)",
+    "join": "np.concatenate(({0}, {1}))",
+    "split": "{0}[:{n}], {0}[{n}:]",
+    "add_forces": "_with_forces({0}, {1}, {2}, {numbers})",
+    "wrap_turns": "_wrapped({0}, {numbers})",
+    "divide_rows": "_rows_divided({0}, {1}, {numbers})",
+    "choose_length": "_chosen_length({0}, {1})",
+    "solve": "_solve({0}, {1})",
+    "saddle": "_saddle({0}, {1})",
+    "least_norm": "_least_norm({0}, {1})",
+    "resolve": "_resolve({0}, {n})",
+    "null_basis": "_null_basis({0}, {n})",
+    "singular_values": "_singular_values({0})",
+    "rotation_of_quaternion": "_rotation_of_quaternion({0})",
+    "quaternion_of_rotation": "_quaternion_of_rotation({0})",
+    "angle_of_rotation": "_angle_of_rotation({0})",
+    "rotation_of_angle": "_rotation_of_angle({0})",
+    "quaternion_of_rpy": "_quaternion_of_rpy({0})",
+    "quaternion_rate": "_quaternion_rate({0}, {1})",
+    "turn_quaternion": "_turned({0}, {1})",
+}
+"""Every operation as an expression; functions stand in templates/numpy."""
+
+
+def steps_text(program: Program, function: PublicFunction) -> str:
+    """The steps as a function of a mode and all inputs, states last, which returns a tuple."""
+    lines = [line for step in function.steps for line in _step(program, step)]
+    runs = [
+        isinstance(s, Run) and "q" in program.functions[s.function].inputs for s in function.steps
+    ]
+    if any(runs):
+        lines.insert(0, "q = _closed(m, X, q0)")
+    outputs = ", ".join(output.value.name for output in function.outputs)
+    head = f"def _steps_{function.name}({', '.join(('m', *(a.name for a in function.inputs)))}):"
+    return "\n".join((head, textwrap.indent("\n".join([*lines, f"return ({outputs},)"]), "    ")))
+
+
+def _step(program: Program, step: Step) -> list[str]:
+    if isinstance(step, Run):
+        names = [target.name for target in step.targets]
+        shapes = tuple(target.shape for target in step.targets)
+        inputs = program.functions[step.function].inputs
+        given = ", ".join((f"_run_{step.function}", str(shapes), *inputs))
+        return unpacked(names, f"m.run({given})", WIDTH - 4)
+    if isinstance(step, Apply):
+        return _wrapped(f"{', '.join(target.name for target in step.targets)} = {_applied(step)}")
+    inputs_of = {f.name: [a.name for a in f.inputs if a.name != "X"] for f in program.public}
+    given, guess = (f"({''.join(f'{n}, ' for n in inputs_of[n])})".replace(", )", ",)")
+                    for n in (step.residual, step.slope))  # fmt: skip
+    functions = f"_steps_{step.residual}, _steps_{step.slope}"
+    arguments = f"{functions}, {step.start.name}, {given}, {guess}, {step.halving}"
+    return _wrapped(f"{step.target.name} = _search(m, {arguments})")
+
+
+def _wrapped(line: str) -> list[str]:
+    return wrap(line, WIDTH - 4, "    ")
+
+
+def _applied(step: Apply) -> str:
+    """An operation at its operands."""
+    operands = [operand.name for operand in step.operands]
+    if step.operation == "extend" and step.operands[0].shape == step.targets[0].shape:
+        return operands[0]
+    return _EXPRESSIONS[step.operation].format(
+        *operands,
+        n=(*step.numbers, 0)[0],
+        numbers=list(step.numbers),
+        places=_places(step.numbers),
+    )
+
+
+def _places(numbers: tuple[int, ...]) -> str:
+    """A slice where places follow each other, else a list."""
+    if numbers and numbers == tuple(range(numbers[0], numbers[0] + len(numbers))):
+        return f"{numbers[0]}:{numbers[-1] + 1}" if len(numbers) > 0 else "[]"
+    return str(list(numbers))
+
+
+# ---- what users call ---------------------------------------------------------------------------
+
+
+def public_text(function: PublicFunction) -> str:
+    """The function that users call."""
+    optional = [f"{a.name}=None" for a in function.optional]
+    optional += ["nearest=False"] * any(map(_is_rotation, function.inputs))
+    arguments = [a.name for a in function.required] + ["p=None"] * function.needs_model
+    arguments += ["*", *optional] if optional else []
+    rows = [f"    {_row(a)}," for a in function.inputs]
+    mode = ["    mode=_Judged,"] * function.gives_status
+    p = "p" if function.needs_model else "None"
+    call = ["return _call(", f'    "{function.name}", _steps_{function.name}, {p},', *rows, *mode]
+    lines = [*_docstring(function), *call, ")"]
+    head = f"def {function.name}({', '.join(arguments)}):"
+    return "\n".join((head, textwrap.indent("\n".join(lines), "    ").replace("\n    \n", "\n\n")))
+
+
+def _is_rotation(argument: Argument) -> bool:
+    """Matrices that are given are rotation matrices."""
+    return len(argument.value.shape) == 2
+
+
+def _row(argument: Argument) -> str:
+    """An argument with the shape of a state and its default."""
+    name, shape = argument.name, "".join(f"{d}, " for d in argument.dimensions).rstrip()
+    value = name
+    if _is_rotation(argument):
+        value = f"_rotations({name}, {argument.value.shape[0]}, nearest)"
+    elif argument.value.size == 0:
+        value = f"np.zeros(0) if {name} is None else {name}"
+    rest = {None: "", Default.HOME_Q: ", HOME_Q"}.get(argument.default)
+    if rest is None:
+        rest = f", {'0.0' if argument.default is Default.ZEROS else '1.0'}"
+    return f'("{name}", {value}, ({shape}){rest}{", True" * argument.positive})'
+
+
+def _docstring(function: PublicFunction) -> list[str]:
+    notes = [line for note in function.notes for line in ("", *_filled(note, ""))]
+    inputs = [_described(a.name, a) for a in function.inputs]
+    if any(map(_is_rotation, function.inputs)):
+        inputs.append(
+            "nearest: take the rotation that is nearest to R: the least sum of squared differences."
+        )
+    inputs += ["p: parameters, by default those of the specification."] * function.needs_model
+    outputs = [_described("", a) for a in function.outputs]
+    outputs += [f"status: {STATUS} (...)."] * function.gives_status
+    return [
+        *_filled(f'"""{function.meaning}', ""),
+        *notes,
+        "",
+        "Args:",
+        *(line for text in inputs for line in _filled(text, "    ")),
+        "",
+        "Returns:",
+        *(line for text in outputs for line in _filled(text, "    ")),
+        '"""',
+    ]
+
+
+STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
+
+
+def _described(name: str, argument: Argument) -> str:
+    shape = ", ".join(("...", *argument.dimensions)) if argument.dimensions else "...,"
+    meaning = f"{name}: {argument.meaning}" if name else argument.meaning
+    return f"{meaning} ({shape})."
+
+
+def _filled(text: str, indent: str) -> list[str]:
+    """Lines of a paragraph."""
+    more = indent + "    " * bool(indent)
+    return textwrap.wrap(text, WIDTH - 4, initial_indent=indent, subsequent_indent=more)
