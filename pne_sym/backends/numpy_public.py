@@ -7,6 +7,7 @@ import textwrap
 from pne_sym.backends.numpy_text import WIDTH, unpacked
 from pne_sym.backends.scalar import wrap
 from pne_sym.program.ir import Program
+from pne_sym.program.operations import ORTHONORMAL
 from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Step
 
 _EXPRESSIONS = {
@@ -131,7 +132,8 @@ def _is_rotation(argument: Argument) -> bool:
 
 def _row(argument: Argument) -> str:
     """An argument with the shape of a state and its default."""
-    name, shape = argument.name, "".join(f"{d}, " for d in argument.dimensions).rstrip()
+    name, shape = argument.name, ", ".join(argument.dimensions)
+    shape += "," * (len(argument.dimensions) == 1)
     value = name
     if _is_rotation(argument):
         value = f"_rotations({name}, {argument.value.shape[0]}, nearest)"
@@ -146,13 +148,14 @@ def _row(argument: Argument) -> str:
 def _docstring(function: PublicFunction) -> list[str]:
     notes = [line for note in function.notes for line in ("", *_filled(note, ""))]
     inputs = [_described(a.name, a) for a in function.inputs]
-    if any(map(_is_rotation, function.inputs)):
+    rotation = any(map(_is_rotation, function.inputs))
+    if rotation:
         inputs.append(
             "nearest: take the rotation that is nearest to R: the least sum of squared differences."
         )
     inputs += ["p: parameters, by default those of the specification."] * function.needs_model
     outputs = [_described("", a) for a in function.outputs]
-    outputs += [f"status: {STATUS} (...)."] * function.gives_status
+    outputs += [f"status: {_STATUS} (...)."] * function.gives_status
     return [
         *_filled(f'"""{function.meaning}', ""),
         *notes,
@@ -162,16 +165,24 @@ def _docstring(function: PublicFunction) -> list[str]:
         "",
         "Returns:",
         *(line for text in outputs for line in _filled(text, "    ")),
+        *(["", "Raises:", *_filled(_NO_ROTATION, "    ")] if rotation else []),
         '"""',
     ]
 
 
-STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
+_NO_ROTATION = (
+    f"ValueError: R has not orthonormal rows, to {ORTHONORMAL:g}, and determinant +1, or no single "
+    "nearest rotation."
+)
+_BY_DEFAULT = {Default.ZEROS: "zero", Default.ONES: "one", Default.HOME_Q: "HOME_Q"}
+_STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
 
 
 def _described(name: str, argument: Argument) -> str:
     shape = ", ".join(("...", *argument.dimensions)) if argument.dimensions else "...,"
     meaning = f"{name}: {argument.meaning}" if name else argument.meaning
+    if argument.default and "by default" not in meaning:
+        meaning += f", by default {_BY_DEFAULT[argument.default]}"
     return f"{meaning} ({shape})."
 
 

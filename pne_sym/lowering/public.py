@@ -12,6 +12,7 @@ from pne_sym.lowering.public_condition import (
     moment_rows,
     scaled_values,
 )
+from pne_sym.lowering.public_notes import with_notes
 from pne_sym.lowering.public_pose import pose_functions
 from pne_sym.program.algorithm import Algorithm
 from pne_sym.program.ir import Program
@@ -37,8 +38,8 @@ _MEANINGS = {
     "q_actuated": "displacements of the actuated joints [m or rad]",
     "wrench": "external wrench on the platform",
     "weights": "positive weights of the actuator forces: least sum of weights tau^2",
-    "length": "by which rows of moments are divided [m]; 0: the rms distance of the platform "
-    "points from their centroid, or where they coincide the rms size of the legs",
+    "length": "by which rows of moments are divided [m]; by default the rms distance of the "
+    "platform points from their centroid, or where they coincide the rms size of the legs",
     "q0": "first guess of the displacements",
 }
 _DEFAULTS = {
@@ -69,7 +70,7 @@ def public_functions(derivation: Derivation, program: Program) -> tuple[PublicFu
     )
     for function in found:
         verify_steps(function)
-    return found
+    return tuple(with_notes(function, coordinates, guessed=guessed) for function in found)
 
 
 class _Writer:
@@ -120,10 +121,11 @@ class _Writer:
             ("Z", "Velocity and gravity terms Z.", "X V", "Z", ("NV",), "dynamics"),
             ("H", "Force transformation H: actuators to task space.", "X", "H", ("NV", "NU"),
              "dynamics"),
-            ("Hk", "Directions Hk of the constraint forces lambda.", "X", "Hk", ("NV", "NC"),
-             "constraints"),
-            ("constraints", "Residuals of the constraints; zero where the loops close.", "X",
-             "constraints", ("NC",), "constraints"),
+            ("Hk", "Directions Hk of the constraint forces lambda (Eq. 36).", "X", "Hk",
+             ("NV", "NC"), "constraints"),
+            ("constraints",
+             "Residuals of the constraints [m, or 1 for angles]; zero on closed loops (Eq. 37).",
+             "X", "constraints", ("NC",), "constraints"),
             ("constraint_bias", "The vector bias in Hk^T A + bias = 0.", "X V",
              "constraint_bias", ("NC",), "constraints"),
             ("inverse_kinematics", "Displacements q of all joints.", "X", "q", ("NJ",),
@@ -137,7 +139,8 @@ class _Writer:
             if name in self.program.functions:
                 a = Algorithm()
                 (value,) = a.run(name, self.program, array)
-                out = self.made(value, array, meaning, *dimensions)
+                words = meaning[0].lower() + meaning[1:].rstrip(".")
+                out = self.made(value, array, words, *dimensions)
                 found.append(
                     self.function(name, meaning, inputs, a, out, group=group, counted=name)
                 )
@@ -332,9 +335,10 @@ class _Writer:
         }
         for effort, (array, owners) in zip(efforts, legs.items(), strict=False):
             forces = a.apply("add_forces", forces, effort, found[array], numbers=owners)
+        kind = "Force and moment" if self.c.transmits_moments else "Force"
         return self.function(
             "leg_reactions",
-            "Force (and moment) of each leg on the platform at its platform joint, base axes.",
+            f"{kind} of each leg on the platform at its platform joint, base axes.",
             "X V A wrench",
             a,
             self.made(forces, "forces", "leg on platform [N, N m]", str(shape[0]), str(shape[1])),
