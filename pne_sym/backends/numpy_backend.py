@@ -62,7 +62,7 @@ class NumpyBackend:
         functions = _functions(bundle)
         texts = tuple(f.text() for f in functions)
         steps = tuple(steps_text(program, f) for f in program.public)
-        public = tuple(public_text(f) for f in program.public if f.is_exported)
+        public = tuple(public_text(program, f) for f in program.public if f.is_exported)
         parts = (render(f"numpy/{name}.py.jinja", **_NUMBERS) for name in _SUPPORT)
         fields = field_views(bundle)
         return ModuleView(

@@ -6,6 +6,7 @@ import textwrap
 
 from pne_sym.backends.numpy_text import WIDTH, unpacked
 from pne_sym.backends.scalar import wrap
+from pne_sym.program.interpret import inputs_read
 from pne_sym.program.ir import Program
 from pne_sym.program.operations import ORTHONORMAL
 from pne_sym.program.public import Apply, Argument, Default, PublicFunction, Run, Step
@@ -110,13 +111,14 @@ def _places(numbers: tuple[int, ...]) -> str:
 # ---- what users call ---------------------------------------------------------------------------
 
 
-def public_text(function: PublicFunction) -> str:
+def public_text(program: Program, function: PublicFunction) -> str:
     """The function that users call."""
     optional = [f"{a.name}=None" for a in function.optional]
     optional += ["nearest=False"] * any(map(_is_rotation, function.inputs))
     arguments = [a.name for a in function.required] + ["p=None"] * function.needs_model
     arguments += ["*", *optional] if optional else []
-    rows = [f"    {_row(a)}," for a in function.inputs]
+    read = inputs_read(program, function)
+    rows = [f"    {_row(a, is_read=a.name in read)}," for a in function.inputs]
     mode = ["    mode=_Judged,"] * function.gives_status
     p = "p" if function.needs_model else "None"
     call = ["return _call(", f'    "{function.name}", _steps_{function.name}, {p},', *rows, *mode]
@@ -130,8 +132,8 @@ def _is_rotation(argument: Argument) -> bool:
     return len(argument.value.shape) == 2
 
 
-def _row(argument: Argument) -> str:
-    """An argument with the shape of a state and its default."""
+def _row(argument: Argument, *, is_read: bool) -> str:
+    """An argument with the shape of a state, its default, and what rule it obeys."""
     name, shape = argument.name, ", ".join(argument.dimensions)
     shape += "," * (len(argument.dimensions) == 1)
     value = name
@@ -139,10 +141,13 @@ def _row(argument: Argument) -> str:
         value = f"_rotations({name}, {argument.value.shape[0]}, nearest)"
     elif argument.value.size == 0:
         value = f"np.zeros(0) if {name} is None else {name}"
-    rest = {None: "", Default.HOME_Q: ", HOME_Q"}.get(argument.default)
-    if rest is None:
-        rest = f", {'0.0' if argument.default is Default.ZEROS else '1.0'}"
-    return f'("{name}", {value}, ({shape}){rest}{", True" * argument.positive})'
+    rule = "positive" if argument.positive else "" if is_read else "unused"
+    parts = [f'"{name}"', value, f"({shape})"]
+    if argument.default or rule:
+        parts.append(_FILL[argument.default])
+    if rule:
+        parts.append(f'"{rule}"')
+    return f"({', '.join(parts)})"
 
 
 def _docstring(function: PublicFunction) -> list[str]:
@@ -174,6 +179,7 @@ _NO_ROTATION = (
     f"ValueError: R has not orthonormal rows, to {ORTHONORMAL:g}, and determinant +1, or no single "
     "nearest rotation."
 )
+_FILL = {None: "None", Default.ZEROS: "0.0", Default.ONES: "1.0", Default.HOME_Q: "HOME_Q"}
 _BY_DEFAULT = {Default.ZEROS: "zero", Default.ONES: "one", Default.HOME_Q: "HOME_Q"}
 _STATUS = "0 OK, 1 unreachable, 2 singular leg, 3 invalid, 4 not converged, as in C"
 

@@ -54,6 +54,21 @@ class PoseLayout:
         return np.concatenate((X[:, :at] + step[:, :at], q, X[:, at + 4 :] + step[:, at + 3 :]), 1)
 
 
+def inputs_read(program: Program, function: PublicFunction) -> set[str]:
+    """Names of the inputs on which its results depend: others may be anything."""
+    read = set[str]()
+    for step in function.steps:
+        if isinstance(step, Run):
+            vectors = program.functions[step.function].inputs
+            read |= {"X", "q0", *vectors} if "q" in vectors else set(vectors)
+        elif isinstance(step, Apply):
+            read |= {operand.name for operand in step.operands}
+        else:
+            parts = (f for f in program.public if f.name in (step.residual, step.slope))
+            read |= {step.start.name}.union(*(inputs_read(program, f) - {"X"} for f in parts))
+    return read & {a.name for a in function.inputs}
+
+
 class Interpreter:
     """The public functions of a model at prepared parameters."""
 
@@ -79,6 +94,8 @@ class Interpreter:
         states = next(len(arguments[a.name]) for a in function.required)
         values = {a.name: self._argument(a, arguments, states) for a in function.inputs}
         state = _State(self, values, states)
+        for read in sorted(inputs_read(self.program, function)):
+            state.blame(~finite(values[read]), Status.INVALID)
         for step in function.steps:
             state.do(step)
         outputs = [np.array(state.values[o.name]) for o in function.outputs]
@@ -104,11 +121,9 @@ class _State:
     def __init__(self, model: Interpreter, values: dict[str, Array], states: int) -> None:
         self.model, self.values, self.states = model, values, states
         self.status = np.full(states, int(Status.OK))
-        for value in values.values():
-            self._blame(~finite(value), Status.INVALID)
         self._q: Array | None = None
 
-    def _blame(self, failed: Flags, status: Status) -> None:
+    def blame(self, failed: Flags, status: Status) -> None:
         """The first cause that is met stays."""
         self.status[failed & (self.status == Status.OK)] = status
 
@@ -131,7 +146,7 @@ class _State:
             self.values[target.name] = found.outputs[array]
         for status in Status:
             if status is not Status.OK:
-                self._blame(found.status == status, status)
+                self.blame(found.status == status, status)
 
     def _closed(self) -> Array:
         """Displacements by iteration from q0, once."""
@@ -139,7 +154,7 @@ class _State:
             q, converged = close_loops(
                 self.model.program, self.model.prepared, self.values["X"], self.values["q0"]
             )
-            self._blame(~converged, Status.NOT_CONVERGED)
+            self.blame(~converged, Status.NOT_CONVERGED)
             self._q = q
         return self._q
 
@@ -153,12 +168,12 @@ class _State:
         for target, result in zip(step.targets, results, strict=True):
             self.values[target.name] = result
             lost = ~finite(result)
-            self._blame(known & lost, operation.status)
+            self.blame(known & lost, operation.status)
 
     def finished(self, outputs: Sequence[Array]) -> NDArray[np.int_]:
         """Status of every state: what is not finite is at least INVALID."""
         for array in outputs:
-            self._blame(~finite(array), Status.INVALID)
+            self.blame(~finite(array), Status.INVALID)
         return self.status
 
     # ---- searches ----------------------------------------------------------------------------
@@ -170,7 +185,7 @@ class _State:
             row = {n: v[k : k + 1] for n, v in self.values.items() if n != step.start.name}
             found[k], status = self._search_one(step, found[k : k + 1], row)
             if status is not Status.OK:
-                self._blame(np.arange(self.states) == k, status)
+                self.blame(np.arange(self.states) == k, status)
         return found
 
     def _search_one(

@@ -114,7 +114,7 @@ def test_along_a_path_in_small_steps(name: str) -> None:
         lengths.append(end)
         if end < PATH:
             assert determinants(name, path[end - 1], q[end - 1]) < 0.4
-        turning = models.module(model_of(name))._TURNS
+        turning = list(models.bundle(model_of(name)).coordinates.turning)
         steps = np.diff(q[:end], axis=0)
         steps[:, turning] = turns_apart(q[1:end], q[: end - 1])[:, turning]
         assert np.abs(steps).max(initial=0.0) < 0.2
