@@ -55,7 +55,12 @@ class PoseLayout:
 
 
 def inputs_read(program: Program, function: PublicFunction) -> set[str]:
-    """Names of the inputs on which its results depend: others may be anything."""
+    """Names of the inputs on which its results depend: others may be anything.
+
+    Helpers for poses look at all: there is no rate at a pose that is none.
+    """
+    if not function.needs_model:
+        return {a.name for a in function.inputs}
     read = set[str]()
     for step in function.steps:
         if isinstance(step, Run):
