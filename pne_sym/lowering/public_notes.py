@@ -43,7 +43,7 @@ def _inverse_dynamics(c: Coordinates) -> list[str]:
     found = []
     if n["NU"] + n["NC"] == facts.rank:
         found.append("The weights are not used, as the actuators are not redundant.")
-    if facts.idle:
+    if facts.idle and facts.completes:
         rest = ", else in least squares" if facts.surplus else ""
         found.append(
             f"Rows of passive extra coordinates hold where `complete_acceleration` was used{rest}."
@@ -63,6 +63,8 @@ def _completion(c: Coordinates) -> str:
     holding = "actuators and constraints" if constrained else "actuators"
     if facts.idle == 0:
         return f"It is A: {holding} hold passive extra coordinates too, whatever they do."
+    if not facts.completes:
+        return "It is A: no accelerations of passive extra coordinates bring other forces about."
     if not facts.is_coupled:
         nothing = "neither actuators nor constraints" if constrained else "no actuators"
         return f"The entries are taken from their own rows (Eq. 7), on which {nothing} act."
