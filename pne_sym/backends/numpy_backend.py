@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import Described, FieldView, describe, field_views
 from pne_sym.backends.numpy_functions import FunctionText
-from pne_sym.backends.numpy_public import public_text, steps_text
+from pne_sym.backends.numpy_public import OPERATIONS, public_text, steps_text
 from pne_sym.backends.numpy_support import needed
 from pne_sym.backends.numpy_text import PythonText
 from pne_sym.backends.templating import render
@@ -46,7 +46,7 @@ class ModuleView:
 class NumpyBackend:
     """Emits NAME.py and __init__.py."""
 
-    operations = None
+    operations = OPERATIONS
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
         """File name -> text."""
@@ -63,7 +63,6 @@ class NumpyBackend:
         texts = tuple(f.text() for f in functions)
         steps = tuple(steps_text(program, f) for f in program.public)
         public = tuple(public_text(program, f) for f in program.public if f.is_exported)
-        parts = (render(f"numpy/{name}.py.jinja", **_NUMBERS) for name in _SUPPORT)
         fields = field_views(bundle)
         return ModuleView(
             describe(bundle),
@@ -77,7 +76,7 @@ class NumpyBackend:
             tuple(_closure(bundle, closure) for closure in program.closures),
             _branches(bundle),
             _prepare(bundle, functions),
-            needed("\n".join(parts), (*texts, *steps, *public)),
+            needed(support(), (*texts, *steps, *public)),
             texts,
             steps,
             public,
@@ -96,6 +95,11 @@ _NUMBERS = {
     "TINY": operations.TINY,
 }
 """What the definitions of operations and iterations fix."""
+
+
+def support() -> str:
+    """All that a module may need of written-out Python."""
+    return "\n".join(render(f"numpy/{name}.py.jinja", **_NUMBERS) for name in _SUPPORT)
 
 
 def _functions(bundle: Bundle) -> tuple[FunctionText, ...]:

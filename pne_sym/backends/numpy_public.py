@@ -52,6 +52,7 @@ _EXPRESSIONS = {
     "turn_quaternion": "_turned({0}, {1})",
 }
 """Every operation as an expression; functions stand in templates/numpy."""
+OPERATIONS = frozenset((*_EXPRESSIONS, "search"))
 
 
 def steps_text(program: Program, function: PublicFunction) -> str:
@@ -75,7 +76,7 @@ def _step(program: Program, step: Step) -> list[str]:
         given = ", ".join((f"_run_{step.function}", str(shapes), *inputs))
         return unpacked(names, f"m.run({given})", WIDTH - 4)
     if isinstance(step, Apply):
-        return _wrapped(f"{', '.join(target.name for target in step.targets)} = {_applied(step)}")
+        return _wrapped(f"{', '.join(target.name for target in step.targets)} = {applied(step)}")
     inputs_of = {f.name: [a.name for a in f.inputs if a.name != "X"] for f in program.public}
     given, guess = (f"({''.join(f'{n}, ' for n in inputs_of[n])})".replace(", )", ",)")
                     for n in (step.residual, step.slope))  # fmt: skip
@@ -88,7 +89,7 @@ def _wrapped(line: str) -> list[str]:
     return wrap(line, WIDTH - 4, "    ")
 
 
-def _applied(step: Apply) -> str:
+def applied(step: Apply) -> str:
     """An operation at its operands."""
     operands = [operand.name for operand in step.operands]
     if step.operation == "extend" and step.operands[0].shape == step.targets[0].shape:
