@@ -58,7 +58,9 @@ class Public(MatlabText):
             "status = zeros(1, n);",
         ]
         read = {name for step in function.steps for name in self._reads(step)}
-        lines += [self._blame(a.value, 3) for a in function.inputs if a.name in read]
+        # As in the other modules: helpers look at all that they are given.
+        looked_at = (a for a in function.inputs if a.name in read or not function.needs_model)
+        lines += [self._blame(a.value, 3) for a in looked_at]
         closed = False
         for step in function.steps:
             if isinstance(step, Run) and "q" in functions[step.function].inputs and not closed:
