@@ -8,9 +8,10 @@ from collections.abc import Iterable
 from pne_sym.backends.bundle import Bundle
 from pne_sym.backends.describe import describe
 from pne_sym.backends.octave.functions import Code
-from pne_sym.backends.octave.public import Public, search_name
-from pne_sym.backends.octave.text import column, define, indices
-from pne_sym.backends.templating import render
+from pne_sym.backends.octave.public import Public, expressions, search_name
+from pne_sym.backends.octave.text import LONGEST_NAME, column, define, indices
+from pne_sym.backends.target import TargetError
+from pne_sym.backends.templating import render, template_folder
 from pne_sym.program import interpret, iteration, linear, operations
 from pne_sym.program.ir import Closure
 from pne_sym.program.public import Search
@@ -22,13 +23,31 @@ _FUNCTION = re.compile(
 )
 
 
+_KEYWORDS = frozenset(
+    "classdef elseif end end_try_catch end_unwind_protect endclassdef endfor endfunction endif "
+    "endparfor endswitch endwhile function otherwise parfor persistent spmd until unwind_protect "
+    "unwind_protect_cleanup".split()
+)
+"""Words of MATLAB and Octave that may be names of models elsewhere."""
+
+
 class OctaveBackend:
     """Emits octave/+NAME/*.m."""
 
-    name = "octave"
+    @property
+    def operations(self) -> frozenset[str]:
+        """Those that are expressions or statements, and those that templates/octave defines."""
+        text = template_folder().joinpath("octave/internal.m.jinja").read_text(encoding="utf-8")
+        return expressions() | set(re.findall(r"^function .*= (\w+)\(", text, re.MULTILINE))
 
     def emit(self, bundle: Bundle) -> dict[str, str]:
-        """File name -> text."""
+        """Path below the model's folder -> text.
+
+        Raises:
+            TargetError: the name of the model, or of a leg type, makes a name that MATLAB refuses.
+        """
+        if bundle.name in _KEYWORDS:
+            raise TargetError(f"{bundle.name}: the target octave: the name is a word of MATLAB")
         code, public, program = Code(bundle), Public(bundle), bundle.program
         exported = [public.exported(f) for f in program.public if f.is_exported]
         users = _files(bundle, [*exported, code.parameters(), _home(bundle)])
@@ -38,7 +57,18 @@ class OctaveBackend:
         files = {"Contents": _contents(bundle)} | users
         files |= {f"+internal/{name}": text for name, text in reached.items()}
         folder = f"octave/+{bundle.name}"
+        _check_lengths(bundle.name, files.values())
         return {f"{folder}/{place}.m": text for place, text in sorted(files.items())}
+
+
+def _check_lengths(name: str, texts: Iterable[str]) -> None:
+    """MATLAB looks at the first characters of a name only."""
+    too_long = re.compile(rf"[^\W\d]\w{{{LONGEST_NAME},}}")
+    if found := min((f for text in texts for f in too_long.findall(text)), default=""):
+        raise TargetError(
+            f"{name}: the target octave: the name {found} is longer than the {LONGEST_NAME} "
+            "characters of MATLAB's names; give the leg type a shorter name"
+        )
 
 
 def _files(bundle: Bundle, texts: Iterable[str]) -> dict[str, str]:

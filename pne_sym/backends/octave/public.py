@@ -188,6 +188,11 @@ class Public(MatlabText):
             yield "%   [] stands for a default."
 
 
+def expressions() -> frozenset[str]:
+    """Names of the operations that are expressions or statements, searches among them."""
+    return frozenset((*_EXPRESSIONS, "split", "search"))
+
+
 def search_name(step: Search) -> str:
     """Name of the function that searches."""
     return f"search_{step.residual}"
