@@ -26,6 +26,12 @@ _C = Syntax(
     function=r"[A-Za-z_][\w\s*]*?\b(\w+)\(",
     ends=r"(?:ok|return|for|if)\b|[{}]|#if|#end",
 )
+_MATLAB = Syntax(
+    comments=("%",),
+    function=r"function (?:[^=(]*= )?(\w+)\(",
+    ends=r"(?:flat_|array_|model\.)|\w+ = (?:sum\(\(|[XVAq]\()|(?:singular|invalid|unreachable) ="
+    r"|(?:status|end)\b",
+)
 
 TARGETS: tuple[Target, ...] = (
     Target(
@@ -55,6 +61,14 @@ TARGETS: tuple[Target, ...] = (
         files=("{name}_xp.py",),
         code=("{name}_xp.py",),
         syntax=_ARRAYS,
+    ),
+    Target(
+        "octave",
+        "functions for MATLAB, Simulink and Octave",
+        "pne_sym.backends.octave:OctaveBackend",
+        files=("octave/+{name}/*.m", "octave/+{name}/+internal/*.m"),
+        code=("octave/+{name}/+internal/*.m",),
+        syntax=_MATLAB,
     ),
     Target(
         "manifest",

@@ -183,7 +183,8 @@ class _Run:
         """The first cause that holds: input, reach, singular, then what is not finite."""
         status = np.full(self.states, int(Status.OK))
         for array in self.flat.values():
-            status[~np.isfinite(array.reshape(self.states, -1)).all(axis=1)] = Status.INVALID
+            own = tuple(range(1, array.ndim))
+            status[~np.isfinite(array).all(axis=own)] = Status.INVALID
         for trouble in (Status.SINGULAR, Status.UNREACHABLE, Status.INVALID):
             for failure in self.failures:
                 if failure.check.trouble == trouble.name.lower():

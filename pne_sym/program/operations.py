@@ -309,7 +309,7 @@ def null_basis(a: Array, *, numbers: tuple[int, ...]) -> tuple[Array, ...]:
 
 def finite(a: Array) -> NDArray[np.bool_]:
     """States in which every entry is finite."""
-    return np.asarray(np.isfinite(a.reshape(len(a), -1)).all(axis=1), dtype=np.bool_)
+    return np.asarray(np.isfinite(a).all(axis=tuple(range(1, a.ndim))), dtype=np.bool_)
 
 
 def _blanked(a: Array, bad: NDArray[np.bool_]) -> Array:

@@ -9,7 +9,7 @@ import pytest
 
 from pne_sym import manipulators
 from pne_sym.model.manipulator import Manipulator
-from pne_sym.program.evaluate import prepare
+from pne_sym.program.evaluate import Status, prepare
 from pne_sym.program.interpret import Interpreter, PoseLayout
 from pne_sym.program.public import PublicFunction
 from tests import models
@@ -89,3 +89,10 @@ def test_every_public_function_is_the_module_s(name: str) -> None:
             np.testing.assert_array_equal(np.isnan(found), np.isnan(wanted), where)
             scale = np.nanmax(np.abs(wanted), initial=0.0) or 1.0
             assert np.nanmax(np.abs(found - wanted), initial=0.0) <= TOLERANCE * scale, where
+
+
+def test_where_no_state_is_left_to_iterate() -> None:
+    run = interpreter(models.catalogue("hexapod_6x6r"))
+    found = run.call("inverse_kinematics", X=np.full((2, 7), np.nan))
+    assert np.isnan(found.outputs[0]).all()
+    assert (found.status == Status.INVALID).all()

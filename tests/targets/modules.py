@@ -14,6 +14,14 @@ from pne_sym.model.manipulator import Manipulator
 from tests import models
 
 STATES = 3
+_SOLVED = {
+    "inverse_dynamics": "H",
+    "leg_reactions": "H",
+    "forward_dynamics": "M",
+    "complete_acceleration": "M",
+    "forward_kinematics": "H",
+    "project": "Hk",
+}
 
 
 @cache
@@ -60,3 +68,15 @@ def call(module: Any, name: str, given: dict[str, Any], asarray: Any = np.asarra
     found = getattr(module, name)(**{n: asarray(a) for n, a in given.items() if n in taken})
     found = found if isinstance(found, tuple) else (found,)
     return found[:2] if name.startswith("condition") else found  # statuses apart
+
+
+def condition(m: Any, function: str, given: dict[str, Any]) -> float:
+    """Condition number of what a function solves; with constraints, of all that is solved."""
+    if function not in _SOLVED:
+        return 1.0
+    X = given["X"]
+    systems = [m.M(X), m.H(X)] if _SOLVED[function] in "MH" else []
+    if hasattr(m, "Hk"):
+        systems += [m.Hk(X), np.concatenate((m.H(X), m.Hk(X)), axis=-1)]
+    values = [np.linalg.svd(a, compute_uv=False) for a in systems]
+    return float(max(np.max(s[:, 0] / s[:, s[0] > 1e-9 * s[0, 0]][:, -1]) for s in values))

@@ -13,32 +13,12 @@ import torch
 
 from pne_sym import manipulators
 from tests import models
-from tests.targets.modules import call, functions, vectors, xp_module
+from tests.targets.modules import call, condition, functions, vectors, xp_module
 
 jax.config.update("jax_enable_x64", True)
-_SOLVED = {
-    "inverse_dynamics": "H",
-    "leg_reactions": "H",
-    "forward_dynamics": "M",
-    "complete_acceleration": "M",
-    "forward_kinematics": "H",
-    "project": "Hk",
-}
 _SAMPLE = ("stewart", "stewart_7ups", "planar_redundant", "tripod_3prs", "hexapod_6x6r")
 _EVERY = [(space, name) for space in (np, array_api_strict) for name in manipulators.names()]
 _SAMPLED = [(space, name) for space in (torch, jax.numpy) for name in _SAMPLE]
-
-
-def condition(m: Any, function: str, given: dict[str, Any]) -> float:
-    """Condition number of what a function solves; with constraints, of all that is solved."""
-    if function not in _SOLVED:
-        return 1.0
-    X = given["X"]
-    systems = [m.M(X), m.H(X)] if _SOLVED[function] in "MH" else []
-    if hasattr(m, "Hk"):
-        systems += [m.Hk(X), np.concatenate((m.H(X), m.Hk(X)), axis=-1)]
-    values = [np.linalg.svd(a, compute_uv=False) for a in systems]
-    return float(max(np.max(s[:, 0] / s[:, s[0] > 1e-9 * s[0, 0]][:, -1]) for s in values))
 
 
 @pytest.mark.parametrize(("space", "name"), [*_EVERY, *_SAMPLED])
